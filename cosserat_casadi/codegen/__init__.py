@@ -1,1 +1,1 @@
-"""Generated C: a model as a folder of sources, and such a folder as CasADi functions again."""
+"""Generated C: export of a model as a folder of sources, and loading of such a folder as CasADi functions."""

@@ -1,10 +1,10 @@
-"""A model as acados takes it: expressions of an implicit DAE, or the C functions that acados makes of such expressions.
+"""A model for acados: expressions of an implicit DAE, or the C functions that acados generates from such expressions.
 
 At rest the states are the model's inputs, the controls their rates, the algebraic states the unknowns of the rods:
 ẋ = u, 0 = residual(z, x), for the integrator IRK. In motion the states begin with the unknowns that move, q, and their
 velocities v: q̇ = v, and 0 = F(q and z, v, v̇, inputs, u), the equations of motion; z are multipliers and tensions.
 
-All is scalar: acados differentiates the expressions anew, and a compiler takes hundreds of times longer for second
+All expressions are scalar: acados differentiates them anew, and a compiler takes hundreds of times longer for second
 derivatives of a graph of matrices than of scalars.
 
 Names and argument lists of the C functions, [x, ẋ, u, z, t, p] to values and Jacobians, are taken from acados'
@@ -40,18 +40,18 @@ from cosserat_casadi.motion.motion_checks import check_movable
 
 @dataclass(frozen=True)
 class AcadosExpressions:
-    """Attributes of an ``AcadosModel`` under their names there.
+    """Attributes of an ``AcadosModel``, by their names in acados.
 
     Attributes:
-        name: of the model, a C identifier.
-        x: states, symbols of SX, or of MX where rods touch rods: the stacked inputs, shape (model.inputs.size,); in
-            motion before them the differential unknowns of the model and their velocities, 1/s.
-        xdot: derivatives of the states.
+        name: name of the model, a C identifier.
+        x: states, SX symbols, or MX if rods touch rods: the stacked inputs, shape (model.inputs.size,); in motion,
+            before them, the differential unknowns of the model and their velocities, 1/s.
+        xdot: time derivatives of the states.
         u: controls: the rates of the inputs, units per second.
         z: algebraic states: the unknowns of the model, shape (model.size,); in motion its algebraic unknowns.
-        p: parameters of the scene, shape (model.parameters.size,), often none; of relaxed contact the smoothing and the
-            abscissae.
-        f_impl_expr: what the integrator holds at zero: ẋ − u, in motion q̇ − v before it, then the residual.
+        p: parameters of the scene, shape (model.parameters.size,), often none; for relaxed contact the smoothing and
+            the abscissae.
+        f_impl_expr: expressions that the integrator holds at zero: in motion q̇ − v, then ẋ − u, then the residual.
     """
 
     name: str
@@ -63,12 +63,12 @@ class AcadosExpressions:
     f_impl_expr: Matrix
 
     def assign(self, target: Any, *, parameters: str = "p") -> None:
-        """Set these attributes of an ``AcadosModel``; costs and constraints are the user's, in x, u, z and p.
+        """Set these attributes of an ``AcadosModel``; the user adds costs and constraints in x, u, z and p.
 
         Args:
             target: the ``AcadosModel``.
-            parameters: what the parameters of the scene, if it names some, are there: ``p``, a value for each stage, or
-                ``p_global``, one value for all stages, which acados can differentiate solutions with.
+            parameters: attribute for the parameters of the scene, if it names some: ``p``, a value for each stage, or
+                ``p_global``, one value for all stages, by which acados can differentiate solutions.
         """
         for entry in fields(self):
             word = parameters if entry.name == "p" else entry.name
@@ -77,18 +77,18 @@ class AcadosExpressions:
 
 
 def acados_expressions(model: Model | RelaxedContact, name: str, *, moving: bool = False) -> AcadosExpressions:
-    """The model as an implicit DAE.
+    """Make an implicit DAE of the model.
 
-    Outputs for a cost in the same symbols are, at rest, ``model.tip[rod](expressions.z, expressions.x)`` and the like;
-    of a scene with parameters ``expressions.p`` is a third argument.
-    In motion a model without algebraic unknowns has ``model.tip[rod](expressions.x[: model.size], inputs)`` with the
-    last entries of ``expressions.x`` for its inputs.
+    Outputs for a cost in these symbols are, at rest, ``model.tip[rod](expressions.z, expressions.x)`` and the like;
+    for a scene with parameters, ``expressions.p`` is a third argument. In motion, for a model without algebraic
+    unknowns, they are ``model.tip[rod](expressions.x[: model.size], inputs)``, where the inputs are the last entries
+    of ``expressions.x``.
 
     Args:
-        model: the model; of a scene in exact contact, at rest, that which :func:`relaxed_contact` makes of it.
-        name: what acados calls it, a C identifier.
+        model: the model; for a scene in exact contact, at rest, the one that :func:`relaxed_contact` makes of it.
+        name: name of the model in acados, a C identifier.
         moving: whether the equations are equations of motion. With supports, joints or cables of given length they have
-            the index 3, for which acados promises nothing.
+            index 3, for which acados promises nothing.
 
     Raises:
         ExportError: the name is no C identifier, the model has no inputs or no scalar form.
@@ -100,7 +100,7 @@ def acados_expressions(model: Model | RelaxedContact, name: str, *, moving: bool
 
 
 def acados_functions(model: Model | RelaxedContact, name: str, *, moving: bool = False) -> list[ca.Function]:
-    """Functions that acados' integrator IRK evaluates, the DAE and its Jacobians, beside the functions of the model.
+    """Make the functions that acados' integrator IRK evaluates, the DAE and its Jacobians, besides those of the model.
 
     Raises:
         ExportError: the name is no C identifier, the model has no inputs or no scalar form.
@@ -131,10 +131,10 @@ def write_acados(
     """Write the functions as C for ``external_function_param_casadi``, one file and header each.
 
     Args:
-        model: as in :func:`acados_expressions`.
-        directory: a folder, new, empty, or of an earlier call.
-        name: what every function begins with, a C identifier.
-        moving: as in :func:`acados_expressions`.
+        model: the model, as in :func:`acados_expressions`.
+        directory: a folder that is new, empty, or written by an earlier call.
+        name: prefix of every function, a C identifier.
+        moving: whether the equations are equations of motion, as in :func:`acados_expressions`.
 
     Returns:
         the folder.
@@ -157,7 +157,7 @@ def write_acados(
 
 
 Dae = tuple[AcadosExpressions, dict[str, Matrix]]
-"""An implicit DAE, and its derivatives with x, ẋ, u and z under the names that they have in acados' functions."""
+"""An implicit DAE, and its derivatives by x, ẋ, u and z, under their names in acados' functions."""
 
 
 def _dae(model: Model | RelaxedContact, name: str, moving: bool) -> Dae:
@@ -230,12 +230,12 @@ def _dae_in_motion(model: Model, name: str) -> Dae:
 
 
 def _kind(equations: ca.Function) -> type[ca.SX] | type[ca.MX]:
-    """Scalars; matrices for equations that leave out terms which they do not need, as of rods that are apart."""
+    """Type of symbols: scalars, or matrices for equations that skip unneeded terms, such as those of distant rods."""
     return ca.MX if chooses(equations) else ca.SX
 
 
 def _by_inputs(model: Model) -> ca.Function:
-    """Arguments of inverse dynamics ↦ its derivatives with the inputs and with their rates."""
+    """Arguments of inverse dynamics ↦ its derivatives by the inputs and by their rates."""
     function = model.inverse_dynamics
     symbols = function.mx_in()
     residual = function(*symbols)

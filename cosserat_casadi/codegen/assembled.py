@@ -1,7 +1,7 @@
-"""The equations of an assembly as parts of rods, and the blocks of its Jacobian.
+"""The equations of an assembly in parts, one for each rod, and the blocks of its Jacobian.
 
-The Jacobian too has a part for each rod, by the columns of the rod (columns.py). As in parts.py rods that compute alike
-share one function, with constants that differ as an argument.
+The Jacobian too has a part for each rod, by the columns of the rod (columns.py). As in parts.py, rods with equal
+instructions share one function, which takes the constants that differ as an argument.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from cosserat_casadi.compiling.scalars_in_c import columns_in_fours, with_calls_
 from cosserat_casadi.model.build import Model
 
 COLUMNS, TURNS, CONSTANTS = len(GIVEN), len(GIVEN) + 1, len(GIVEN) + 2
-"""Numbers of the arguments of a function that parts share."""
+"""Indices of further arguments of a function that parts share."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Assembled:
     """Parts of the solver of an assembly.
 
     Attributes:
-        blocks: of the Jacobian.
+        blocks: blocks of the Jacobian.
         residual: the residual in parts.
         jacobian: entries of ∂ residual / ∂x in parts.
         input_jacobian: ∂ residual / ∂ (inputs, parameters) in parts, entries by their index in the dense matrix.
@@ -52,13 +52,13 @@ class Assembled:
 
     @property
     def kernels(self) -> list[Kernel]:
-        """All functions; functions of the residual call their intervals in fours."""
+        """All functions; functions of the residual compute four intervals at a time."""
         of_residual = map(with_calls_in_fours, self.residual.kernels)
         return [*of_residual, *self.jacobian.kernels, *self.input_jacobian.kernels]
 
 
 def assembled(model: Model, names: Names) -> Assembled | None:
-    """The equations of an assembly in parts; None where one dense Jacobian does."""
+    """Make the equations of an assembly in parts; None if one dense Jacobian suffices."""
     partition = blocks(model.discrete, model.path_jacobian.sparsity_out(0))
     if partition is None:
         return None
@@ -73,7 +73,7 @@ def assembled(model: Model, names: Names) -> Assembled | None:
 
 
 def _jacobian(model: Model, partition: Blocks, name: str) -> Parted:
-    """∂ residual / ∂x in parts, by columns where it has such a form."""
+    """Make ∂ residual / ∂x in parts, by columns if it has such a form."""
     by_columns = None if model.discrete.pairs else parted_by_columns(model, partition, name)
     if by_columns is not None:
         return by_columns
@@ -82,7 +82,7 @@ def _jacobian(model: Model, partition: Blocks, name: str) -> Parted:
 
 
 def _path_function(function: ca.Function, *, dense: bool = False) -> ca.Function:
-    """A map (x, inputs, factor) ↦ result of one that may not depend on the factor."""
+    """Make a map (x, inputs, factor) ↦ result from a function that may not depend on the factor."""
     symbols = function.mx_in()
     result = function.call(symbols)[0]
     given = symbols if len(symbols) == 3 else [*symbols, ca.MX.sym("factor")]
@@ -95,8 +95,8 @@ class _Piece:
 
     Attributes:
         stream: instructions of the entries, then of a column of the rod.
-        column: the rod's columns; None for entries that depend on none.
-        entries: numbers of the entries of the whole.
+        column: columns of the rod; None for entries that do not depend on columns.
+        entries: indices of the entries in the whole.
     """
 
     stream: Stream
@@ -105,23 +105,23 @@ class _Piece:
 
     @property
     def key(self) -> Hashable:
-        """Key that pieces which compute alike share: values, and entries that are read of columns and turns."""
+        """Key of all pieces with equal instructions: values, and the entries that they read of columns and turns."""
         if self.column is None:
             return self.stream.key
         return self.stream.key, tuple(self.stream.reads[COLUMNS]), tuple(self.stream.reads[TURNS])
 
 
 def parted_by_columns(model: Model, blocks: Blocks, name: str) -> Parted | None:
-    """The Jacobian of an assembly in parts by columns.
+    """Make the Jacobian of an assembly in parts by columns.
 
     Args:
-        model: whose Jacobian it is.
-        blocks: of the Jacobian.
-        name: what the kernels are called, before their numbers.
+        model: the model of the assembly.
+        blocks: blocks of the Jacobian.
+        name: prefix of the names of kernels, before their numbers.
 
     Returns:
-        the parts, in loops where they have more than MOST_IN_COLUMNS statements; None where entries of one owner
-        depend on the columns of several rods, or where an operation has no form in fours.
+        the parts, with loops if they have more than MOST_IN_COLUMNS statements; None if entries of one owner depend on
+        the columns of several rods, or if an operation has no form for four numbers at a time.
     """
     jacobian = columned_jacobian(on_path(model))
     if jacobian is None:
@@ -161,7 +161,7 @@ def parted_by_columns(model: Model, blocks: Blocks, name: str) -> Parted | None:
 
 
 def _function(jacobian: ColumnedJacobian, entries: ca.SX, rods: Sequence[str]) -> tuple[ca.Function, ColumnPart | None]:
-    """Entries, and behind them a column of the rod that they depend on, if of any."""
+    """Make the function of entries, followed by a column of the rod on which they depend, if there is one."""
     if not rods:
         given, _, _ = jacobian.scalars
         return ca.Function("part", given, [entries], *names_of_part(ARGUMENTS[:3])), None
@@ -171,7 +171,7 @@ def _function(jacobian: ColumnedJacobian, entries: ca.SX, rods: Sequence[str]) -
 
 
 def _shared_kernel(pieces: Sequence[_Piece], name: str) -> tuple[Kernel, list[list[float]]]:
-    """A kernel for pieces that compute alike, and the constants of each."""
+    """Make a kernel for pieces with equal instructions, and the constants of each."""
     kernel, constants = shared([piece.stream for piece in pieces], name)
     columns = [piece.column for piece in pieces if piece.column is not None]
     if not columns:
@@ -186,7 +186,7 @@ def _shared_kernel(pieces: Sequence[_Piece], name: str) -> tuple[Kernel, list[li
 
 
 def _form(kernel: ca.Function, stream: Stream, part: ColumnPart, *, turns_are_constant: bool) -> ColumnForm:
-    """A shared function, which takes only the columns and turns that it reads, as a form with all of both."""
+    """Make a form, which takes all columns and turns, of a shared function that takes only those it reads."""
     symbols = kernel.sx_in()
     own_constants = symbols[CONSTANTS]
     constants = own_constants
@@ -210,7 +210,7 @@ def _form(kernel: ca.Function, stream: Stream, part: ColumnPart, *, turns_are_co
 
 
 def _by_columns(form: ColumnForm, name: str) -> ca.Function:
-    """The map (x, inputs, factor, constants) ↦ entries that a form with constants is."""
+    """Make the map (x, inputs, factor, constants) ↦ entries of a form with constants."""
     given = form.function.mx_in()[: form.columns_argument]
     turns = ca.MX(ca.DM(in_groups(form.turns)))
     if form.turns_behind is not None:

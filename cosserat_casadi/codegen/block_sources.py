@@ -1,4 +1,4 @@
-"""The words of the solver's source that depend on how its Jacobian is eliminated: as a whole, or rod after rod."""
+"""Words in the templates of the solver that depend on the elimination of its Jacobian: as a whole, or rod by rod."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ MEMBERS = """  {real} entries[{entries}];
   {real} front_values[{front_count}][{max_order}];
   {real} interface_values[{interface}];
 """
-"""Arrays that the block elimination works in, as members of the workspace."""
+"""Arrays of the block elimination, as members of the workspace."""
 
 
 def dense_words(basics: Words) -> Words:
@@ -37,7 +37,7 @@ def dense_words(basics: Words) -> Words:
 
 
 def block_words(basics: Words, partition: Assembled) -> Words:
-    """Words of a solver that eliminates rod after rod."""
+    """Words of a solver that eliminates rod by rod."""
     split = partition.blocks
     order = split.by_fronts
     tables, listed = front_tables(order.fronts)
@@ -95,7 +95,7 @@ def part_tables(kind: str, word: str, parted: Parted) -> str:
 
     Args:
         kind: type of the records in C.
-        word: what the names of the tables begin with.
+        word: prefix of the names of the tables.
         parted: the parts.
     """
     stem = word.upper()

@@ -1,9 +1,9 @@
-"""How the Jacobian of an assembly falls into blocks, one for each rod, with moving frames as their interface.
+"""Blocks of the Jacobian of an assembly, one for each rod, with moving frames as their interface.
 
-A rod's strains, the multipliers of its supports and the tensions in it meet the other rods through moving frames
-alone. So each block is eliminated by itself, with its rows and columns of the interface, and the rest of the interface
-is eliminated last: the work is linear in the number of rods. A front is a block with the interface unknowns
-that it touches.
+The strains of a rod, the multipliers of its supports and its tensions are coupled to the other rods through moving
+frames alone. So each block is eliminated by itself, with its rows and columns of the interface, and the rest of the
+interface is eliminated last: the work is linear in the number of rods. A front is a block with the interface
+unknowns to which it is coupled.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.floating_frames import FloatingFrame
 
 INTERFACE = -1
-"""Owner of what belongs to no rod."""
+"""Owner number of unknowns that belong to no rod."""
 
 
 @dataclass(frozen=True)
 class Front:
-    """A block with the part of the interface that it touches.
+    """A block with the part of the interface to which it is coupled.
 
     Attributes:
         members: unknowns of the block.
-        interface: interface unknowns that it touches, as numbers within the interface, not within x.
-        start: first entry of its matrix among the matrices of all fronts.
+        interface: interface unknowns to which it is coupled, as indices within the interface, not within x.
+        start: index of the first entry of its matrix among the matrices of all fronts.
     """
 
     members: list[int]
@@ -37,7 +37,7 @@ class Front:
 
     @property
     def order(self) -> int:
-        """Rows of its matrix."""
+        """Number of rows of the matrix."""
         return len(self.members) + len(self.interface)
 
 
@@ -46,11 +46,11 @@ class Elimination:
     """An order of elimination as tables.
 
     Attributes:
-        fronts: one after the other.
+        fronts: fronts, in the order of elimination.
         interface: unknowns of the interface, which is eliminated last.
-        entry_fronts: of each entry its front, or the number of fronts for an entry of the interface.
-        entry_rows: of each entry the row there.
-        entry_columns: of each entry the column there.
+        entry_fronts: for each entry its front, or the number of fronts for an entry of the interface.
+        entry_rows: for each entry its row in the matrix of that front.
+        entry_columns: for each entry its column in the matrix of that front.
     """
 
     fronts: list[Front]
@@ -61,12 +61,12 @@ class Elimination:
 
     @property
     def interface_start(self) -> int:
-        """First entry of the interface's own matrix, behind the matrices of the fronts."""
+        """Index of the first entry of the interface matrix, which follows the matrices of the fronts."""
         return sum(front.order**2 for front in self.fronts)
 
     @property
     def size(self) -> int:
-        """Numbers in the matrices of all fronts and of the interface."""
+        """Count of numbers in the matrices of all fronts and of the interface."""
         return self.interface_start + len(self.interface) ** 2
 
     @property
@@ -85,8 +85,8 @@ class Blocks:
     Attributes:
         owners: for each unknown the number of its rod, or INTERFACE.
         pattern: sparsity of the Jacobian.
-        parts: for each unknown the rod that its row is computed with, or INTERFACE; a moving base of a rod is of the
-            interface, and is computed with the rod, whose wrench acts on it.
+        parts: for each unknown the rod with which its row is computed, or INTERFACE; a moving base belongs to the
+            interface, but is computed with its rod, whose wrench acts on it.
     """
 
     owners: list[int]
@@ -95,13 +95,13 @@ class Blocks:
 
     @cached_property
     def entry_owners(self) -> list[int]:
-        """The rod that each entry of the Jacobian belongs to, or INTERFACE."""
+        """Number of the rod to which each entry of the Jacobian belongs, or INTERFACE."""
         rows, columns = self.pattern.get_triplet()
         return [max(self.owners[i], self.owners[j]) for i, j in zip(rows, columns, strict=True)]
 
     @cached_property
     def entry_parts(self) -> list[int]:
-        """The rod that each entry of the Jacobian is computed with, or INTERFACE."""
+        """Number of the rod with which each entry of the Jacobian is computed, or INTERFACE."""
         rows, columns = self.pattern.get_triplet()
         parts = []
         for owner, i, j in zip(self.entry_owners, rows, columns, strict=True):
@@ -111,7 +111,7 @@ class Blocks:
 
     @property
     def separate(self) -> bool:
-        """Whether no entry couples two blocks without the interface."""
+        """Whether no entry couples two blocks directly, past the interface."""
         rows, columns = self.pattern.get_triplet()
         pairs = ({self.owners[i], self.owners[j]} - {INTERFACE} for i, j in zip(rows, columns, strict=True))
         return all(len(pair) < 2 for pair in pairs)
@@ -139,7 +139,7 @@ class Blocks:
 
     @cached_property
     def by_fronts(self) -> Elimination:
-        """Front after front."""
+        """Elimination of one front after another."""
         interface = {unknown: i for i, unknown in enumerate(self.interface)}
         local = list[dict[int, int]]()
         for front in self.fronts:
@@ -158,20 +158,20 @@ class Blocks:
 
     @property
     def as_a_whole(self) -> Elimination:
-        """All unknowns as one front."""
+        """Elimination of all unknowns as one front."""
         rows, columns = self.pattern.get_triplet()
         whole = Front(list(range(len(self.owners))), [], 0)
         return Elimination([whole], [], [0] * len(rows), [*rows], [*columns])
 
     @cached_property
     def dense_indices(self) -> list[int]:
-        """Index of each entry in the dense matrix, column after column."""
+        """Index of each entry in the dense matrix, which is stored by columns."""
         rows, columns = self.pattern.get_triplet()
         return [i + j * self.pattern.size1() for i, j in zip(rows, columns, strict=True)]
 
 
 def blocks(discrete: DiscreteScene, pattern: ca.Sparsity) -> Blocks | None:
-    """Blocks of a scene's Jacobian; None for one rod alone, where nothing couples the rods, or where too much does."""
+    """Find the blocks of a scene's Jacobian; None for a single rod, and if rods are not coupled or couple directly."""
     literal = any(discrete_rod.discretisation.transport == "permuted" for discrete_rod in discrete.rods.values())
     if len(discrete.rods) < 2 or not discrete.frames or literal:
         return None

@@ -1,13 +1,13 @@
-"""Jacobians by columns: what computes one column of a rod's variations computes four in the lanes of a vector.
+"""Jacobians by columns: code for one column of a rod's variations computes four columns in the lanes of a vector.
 
-Column j of the variation of a field follows from the turns of the intervals with the j-th angular coordinate, and from
-nothing else that has a number j (rod/tangent.py). So the Jacobian falls into three parts:
+Column j of the variation of a field depends on j only through the turns of the intervals by the j-th angular
+coordinate (rod/tangent.py). So the Jacobian falls into three parts:
 
     no columns            functions of x, inputs and load factor, or of other arguments
-    columns               functions of the same and of a column of turns, which is constant
+    columns               functions of these arguments and of a column of turns, which is constant
     the rest              the Jacobian from its columns
 
-Parameters stand behind the inputs, as in every vector of inputs of the solver in C.
+Parameters are appended to the inputs, as in every vector of inputs of the solver in C.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.rod.tangent import Columns, Tangent
 
 SHARED_AT_MOST = 2
-"""Instructions of a function before common terms are looked for, over its shared form's: no function has more.
+"""Upper bound of the number of instructions of a function before common terms are shared, over the number after.
 
-1.0 to 1.6 on the scenes of examples/. Looking for common terms takes by far the most time of a long function.
+The ratio is 1.0 to 1.6 on the scenes of examples/. To share common terms takes most of the time for a long function.
 """
 
 GIVEN = ["x", "inputs", "load_factor"]
@@ -42,10 +42,10 @@ GIVEN = ["x", "inputs", "load_factor"]
 
 @dataclass(frozen=True)
 class RodColumns:
-    """The columns of one rod, each as a function of its turns.
+    """The columns of one rod, as a function of the turns of a column.
 
     Attributes:
-        of_one: (arguments, turns) ↦ all rows of one column, as scalars.
+        of_one: (arguments, turns) ↦ all rows of one column, in scalars.
         pattern: sparsity of the matrix of all columns.
         turns: constant turns of all columns, shape (entries, count).
     """
@@ -56,12 +56,12 @@ class RodColumns:
 
     @property
     def stride(self) -> int:
-        """Columns, rounded up to whole groups of LANES."""
+        """Number of columns, rounded up to a multiple of LANES."""
         return int(self.padded_turns.shape[1])
 
     @cached_property
     def padded_turns(self) -> FloatArray:
-        """The turns with zeros behind the last column."""
+        """The turns, padded with zero columns to the stride."""
         return _padded(self.turns)
 
 
@@ -78,7 +78,7 @@ def _turns(tangent: Tangent) -> tuple[FloatArray, ca.MX, ca.MX]:
 
 
 def _padded(turns: FloatArray) -> FloatArray:
-    """Turns with zeros behind the last column, up to a multiple of LANES columns."""
+    """Pad turns with zero columns to a multiple of LANES columns."""
     entries, count = turns.shape
     padded = np.zeros((entries, -(-count // LANES) * LANES))
     padded[:, :count] = turns
@@ -87,13 +87,13 @@ def _padded(turns: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class WrittenJacobian:
-    """A Jacobian whose columns may be symbols.
+    """A Jacobian in which columns may be replaced by symbols.
 
     Attributes:
-        arguments: symbols that it is written in, by name.
+        arguments: symbols of its arguments, by name.
         system: rods in these symbols.
-        of_system: the same rods, whose columns may be known ↦ Jacobian.
-        gathered: function of the arguments, and of more behind them ↦ function of the arguments that it has in C.
+        of_system: function of these rods, whose columns may be given ↦ Jacobian.
+        gathered: function of the arguments and further ones ↦ the function with its arguments in C.
         given: names of the arguments in C.
     """
 
@@ -105,7 +105,7 @@ class WrittenJacobian:
 
 
 def on_path(model: Model) -> WrittenJacobian:
-    """The Jacobian on the path of loads."""
+    """Make the Jacobian on the path of loads."""
     x = ca.MX.sym("x", model.size)
     inputs = ca.MX.sym("inputs", model.inputs.size)
     load_factor = ca.MX.sym("load_factor")
@@ -123,8 +123,8 @@ class ColumnedJacobian:
 
     Attributes:
         given: names of its arguments.
-        rods: columns by the name of their rod, of those rods whose moments pass.
-        of_columns: (arguments, matrix of columns of each rod …) ↦ Jacobian, as scalars.
+        rods: columns by the name of the rod, for rods whose intervals turn and pass moments on.
+        of_columns: (arguments, matrix of columns of each rod …) ↦ Jacobian, in scalars.
     """
 
     def __init__(self, written: WrittenJacobian) -> None:
@@ -145,7 +145,7 @@ class ColumnedJacobian:
         return RodColumns(self._scalar("of_one", [turn], ca.densify(one)), pattern, turns)
 
     def _scalar(self, name: str, further: Sequence[ca.MX], result: Matrix) -> ca.Function:
-        """The map (arguments, further …) ↦ result as scalars."""
+        """Make the map (arguments, further …) ↦ result in scalars."""
         arguments = self._written.arguments
         words = [*arguments, *(f"further_{i}" for i in range(len(further)))]
         function = ca.Function(name, [*arguments.values(), *further], [result], words, ["result"])
@@ -153,7 +153,7 @@ class ColumnedJacobian:
 
     @cached_property
     def scalars(self) -> tuple[list[ca.SX], dict[str, ca.SX], ca.SX]:
-        """Symbols of the arguments, symbols of the columns by rod, and the Jacobian in them."""
+        """Symbols of the arguments, symbols of the columns by rod, and the Jacobian in these symbols."""
         function = self.of_columns
         symbols = function.sx_in()
         count = len(self.given)
@@ -161,12 +161,12 @@ class ColumnedJacobian:
         return symbols[:count], columns, function.call(symbols)[0]
 
     def rods_of(self, entries: ca.SX) -> list[str]:
-        """Names of the rods whose columns some expressions of :attr:`scalars` depend on."""
+        """Names of the rods on whose columns some expressions of :attr:`scalars` depend."""
         _, columns, _ = self.scalars
         return [rod for rod, symbols in columns.items() if ca.depends_on(entries, ca.vertcat(*symbols.nonzeros()))]
 
     def part(self, entries: ca.SX, rod: str) -> ColumnPart:
-        """Some entries of the Jacobian, which depend on the columns of this rod alone.
+        """Return some entries of the Jacobian, which depend on the columns of this rod alone.
 
         Args:
             entries: expressions of :attr:`scalars`.
@@ -194,14 +194,14 @@ class ColumnedJacobian:
 
 @dataclass(frozen=True)
 class ColumnPart:
-    """Entries of a Jacobian, and one of the columns that they follow from, as scalar expressions.
+    """Entries of a Jacobian, and one of the columns from which they follow, as scalar expressions.
 
     Attributes:
         given: names of the arguments.
-        symbols: of the arguments, of the matrix of columns, of the turns of one column.
+        symbols: symbols of the arguments, of the matrix of columns, and of the turns of one column.
         entries: the entries.
         column: rows of one column.
-        turns: as of :class:`ColumnForm`.
+        turns: constant turns of all columns, as in :class:`ColumnForm`.
     """
 
     given: Sequence[str]
@@ -211,7 +211,7 @@ class ColumnPart:
     turns: FloatArray
 
     def form(self, name: str) -> ColumnForm:
-        """Entries and column as one scalar function, with common terms shared."""
+        """Make one scalar function of entries and column, with common terms shared."""
         shared = ca.cse([self.entries, self.column])
         words = [*self.given, *_words_of_columns(name)]
         function = ca.Function(name, self.symbols, shared, words, ["jacobian", "column"])
@@ -219,7 +219,7 @@ class ColumnPart:
 
 
 def columned_jacobian(written: WrittenJacobian) -> ColumnedJacobian | None:
-    """A Jacobian by columns; None where no rod has any."""
+    """Write a Jacobian by columns; None if no rod has columns."""
     if any(rod.discretisation.transport == "permuted" for rod in written.system.discrete.rods.values()):
         return None
     jacobian = ColumnedJacobian(written)
@@ -227,12 +227,12 @@ def columned_jacobian(written: WrittenJacobian) -> ColumnedJacobian | None:
 
 
 def in_columns(written: WrittenJacobian, name: str, most: int | None = None) -> ColumnForm | None:
-    """The Jacobian of one rod by columns; None where it has no such form, or surely a longer one than is wanted.
+    """Write the Jacobian of one rod by columns; None if it has no such form, or surely one with too many statements.
 
     Args:
         written: the Jacobian.
-        name: of the function.
-        most: statements up to which it is wanted, any number by default.
+        name: name of the function.
+        most: largest number of statements, unlimited by default.
     """
     if len(written.system.discrete.rods) != 1:
         return None
@@ -248,15 +248,15 @@ def in_columns(written: WrittenJacobian, name: str, most: int | None = None) -> 
 
 
 def pose_in_columns(model: Model, spec: FunctionSpec, owner: str, name: str) -> ColumnForm | None:
-    """Derivatives of a pose on the rod of a scene with all arguments, by columns; None where it has no such form.
+    """Write the derivatives of a pose on the rod of a scene by all arguments, by columns; None without such a form.
 
-    A column with an angular strain coordinate follows from its turns alone; the others have no columns.
+    A column for an angular strain coordinate follows from its turns alone; other coordinates have no such columns.
 
     Args:
-        model: whose function it is.
-        spec: its entry in the table of functions; the first result is the derivative with x.
-        owner: of the function.
-        name: of the form.
+        model: model of the scene.
+        spec: entry in the table of functions; its first result is the derivative by x.
+        owner: owner of the function.
+        name: name of the form.
     """
     discrete = model.discrete
     if len(discrete.rods) != 1:
@@ -284,12 +284,12 @@ def pose_in_columns(model: Model, spec: FunctionSpec, owner: str, name: str) -> 
 
 
 def _words_of_columns(name: str) -> list[str]:
-    """Names of the last two arguments of a form, which no other form has: functions share arguments of one name."""
+    """Names of the last two arguments of a form, unique to it, because functions share arguments of equal names."""
     return [f"{name}_columns", f"{name}_turns"]
 
 
 def _parts(columns: Columns) -> list[Matrix]:
-    """The parts of columns, one below the other."""
+    """List the parts of columns, from top to bottom."""
     return [columns.section_rotation, columns.angular, *columns.linear.values(), *columns.following.values()]
 
 
@@ -298,7 +298,7 @@ def _stacked(columns: Columns) -> Matrix:
 
 
 def _unstacked(alike: Columns, every: ca.MX) -> Columns:
-    """Stacked columns in parts like other columns of the rod."""
+    """Split stacked columns into parts like those of other columns of the rod."""
     ends = np.cumsum([0, *(part.shape[0] for part in _parts(alike))]).tolist()
     rotation, angular, *further = ca.vertsplit(every, ends)
     count = len(alike.linear)

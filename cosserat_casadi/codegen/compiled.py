@@ -1,4 +1,4 @@
-"""An exported folder, compiled: the solver in C, and CasADi functions, with exact derivatives where it holds them."""
+"""A compiled exported folder: the solver in C, and CasADi functions, with exact derivatives if the folder has them."""
 
 from __future__ import annotations
 
@@ -32,28 +32,28 @@ from cosserat_casadi.model.function_table import PARAMETERS, SCALAR_ARGUMENTS, O
 from cosserat_casadi.numerics.outcome import Outcome
 
 OWNED = frozenset(spec.name for spec in FUNCTIONS if spec.public and spec.owner is not Owner.SCENE)
-"""Functions of which a scene may have none: one without bodies."""
+"""Functions that a scene may lack, such as those of bodies in a scene without bodies."""
 
 
 @dataclass(frozen=True)
 class Compiled(CompiledMotion):
     """An exported folder as compiled functions.
 
-    Methods take inputs by name, or all inputs stacked; inputs that are not named keep the scene's values. So do
-    parameters, where the scene names some. They raise a ValueError for an
-    argument of the wrong size, and a SceneError for names or values that the scene refuses. Functions take both
-    stacked, parameters behind the inputs, as functions of a model do.
+    Methods take inputs by name, or all inputs stacked; inputs that are not named keep the scene's values. Parameters
+    are passed alike, if the scene names some. Methods raise a ValueError for an argument of the wrong size, and a
+    SceneError for names or values that the scene refuses. Functions take inputs and parameters stacked, as two
+    arguments, like functions of a model.
 
-    Every function of the header in C is a member under its name in :class:`Model`: ``tip``, ``shape``, ``igm``,
-    ``tip_jacobian`` by rod, ``actuator`` by actuator, ``body`` and ``body_jacobian`` by body, with the results that
-    it has in C. A pose is (position, quaternion). Functions with the key ``external`` in the manifest have derivatives
-    as :attr:`residual`, other functions none.
+    Every function of the header in C is a member with its name in :class:`Model`: ``tip``, ``shape``, ``igm``,
+    ``tip_jacobian`` by rod, ``actuator`` by actuator, ``body`` and ``body_jacobian`` by body, with its results in C. A
+    pose is (position, quaternion). Functions with the key ``external`` in the manifest have derivatives like
+    :attr:`residual`; other functions have none.
 
     Attributes:
         library: the shared object.
-        manifest: what the folder says of itself.
-        info_type: the struct in C that says how a call ended.
-        outcomes: of the solver, in the order of their numbers.
+        manifest: contents of the folder, as data.
+        info_type: the struct in C with the outcome of a call.
+        outcomes: outcomes of the solver, in the order of their numbers.
     """
 
     info_type: ClassVar[type[AnswerInfo]] = AnswerInfo
@@ -61,7 +61,7 @@ class Compiled(CompiledMotion):
 
     @staticmethod
     def is_sound(described: Any) -> bool:
-        """Whether the entries that are read of a manifest of rods are there."""
+        """Whether a manifest of rods has all entries that are read."""
         rods = all(isinstance(entry["rod"], str) and type(entry["count"]) is int for entry in described["unknowns"])
         named = [*described.get("bodies", []), *described.get("joints", [])]
         owners = [*(entry["name"] for entry in described.get("actuators", [])), *named]
@@ -71,7 +71,7 @@ class Compiled(CompiledMotion):
 
     @staticmethod
     def sizes(described: Mapping[str, Any]) -> dict[str, int]:
-        """Unknowns and parameters by their macros."""
+        """Numbers of unknowns and parameters, by their macros."""
         unknowns = sum(entry["count"] for entry in described["unknowns"])
         return {"UNKNOWNS": unknowns, **CompiledMotion.sizes(described)}
 
@@ -85,14 +85,14 @@ class Compiled(CompiledMotion):
 
     @cached_property
     def differentiable(self) -> bool:
-        """Whether the functions below have derivatives: whether the folder was exported with them."""
+        """Whether the folder was exported with derivatives of its functions."""
         return f"{self._names.name}_derivatives.c" in self.manifest["files"]
 
     @cached_property
     def residual(self) -> ca.Function:
-        """(x, inputs) ↦ residual; with exact first and second derivatives where :attr:`differentiable`.
+        """(x, inputs) ↦ residual; with exact first and second derivatives if :attr:`differentiable`.
 
-        In a scene with parameters (x, inputs, p).
+        For a scene with parameters the arguments are (x, inputs, p).
         """
         if self.differentiable:
             return ca.external(self._names.differentiable("residual"), str(self.library))
@@ -109,7 +109,7 @@ class Compiled(CompiledMotion):
         return PlainFunction("residual", arguments, {"residual": (self.size, 1)}, evaluate, EXPORT_WITH)
 
     def __getattr__(self, name: str) -> Any:
-        """A function of the header as a CasADi function, or one for each rod, actuator or body, by name."""
+        """Return a function of the header as a CasADi function, or one for each rod, actuator or body, by name."""
         # An attribute that is not set yet, such as in a copy under way, must not be asked for here.
         manifest = self.__dict__.get("manifest", {})
         entries = [entry for entry in manifest.get("functions", []) if entry.get("function") == name]
@@ -133,7 +133,7 @@ class Compiled(CompiledMotion):
         *,
         parameters: ArgumentValues = None,
     ) -> CompiledSolution:
-        """Equilibrium by the solver in C, from unknowns to start from; the unloaded rod by default."""
+        """Solve for an equilibrium in C, from given unknowns, by default those of the unloaded rod."""
         given = self.inputs.stacked(inputs)
         x = vector(np.zeros(self.size) if start is None else start, self.size, "start").copy()
         info = self.info_type()
@@ -142,14 +142,14 @@ class Compiled(CompiledMotion):
         return self._solution(x, given, info)
 
     def _solution(self, x: FloatArray, inputs: FloatArray, info: AnswerInfo) -> CompiledSolution:
-        """A solution from its unknowns, its inputs, and the struct beside them."""
+        """Make a solution of unknowns, inputs, and the struct with the outcome."""
         words = judged_words(info, self.outcomes)
         return CompiledSolution(**words, tolerance=self.tolerance, inputs=inputs, x=x)
 
     def error_estimate(
         self, inputs: ArgumentValues, x: npt.ArrayLike, *, parameters: ArgumentValues = None
     ) -> float | None:
-        """Estimated error of an equilibrium, from modes that the model lacks; None where x is no equilibrium.
+        """Estimate the error of an equilibrium by the missing modes of the model; None if x is no equilibrium.
 
         Raises:
             AttributeError: the folder was exported without the estimate.
@@ -168,14 +168,14 @@ class Compiled(CompiledMotion):
         parameters_before: ArgumentValues = None,
         parameters: ArgumentValues = None,
     ) -> CompiledSolution:
-        """Equilibrium by the solver in C, along the straight line from inputs for which ``start`` is one.
+        """Solve for an equilibrium in C along the straight line from inputs for which ``start`` is an equilibrium.
 
         Args:
-            before: inputs that ``start`` is an equilibrium for.
-            inputs: inputs to go to.
+            before: inputs for which ``start`` is an equilibrium.
+            inputs: inputs of the result.
             start: unknowns.
-            parameters_before: parameters that ``start`` is an equilibrium for.
-            parameters: parameters to go to.
+            parameters_before: parameters for which ``start`` is an equilibrium.
+            parameters: parameters of the result.
         """
         old = self.inputs.stacked(before, "before")
         given = self.inputs.stacked(inputs)
@@ -188,7 +188,7 @@ class Compiled(CompiledMotion):
         return self._solution(x, given, info)
 
     def solve_batch(self, inputs: npt.ArrayLike, *, parameters: ArgumentValues = None) -> list[CompiledSolution]:
-        """Equilibria of many load cases.
+        """Solve for equilibria of many load cases.
 
         Args:
             inputs: shape (count, size of the inputs), or one row for all.
@@ -210,21 +210,21 @@ class Compiled(CompiledMotion):
     def sensitivity(
         self, inputs: ArgumentValues, x: npt.ArrayLike, *, parameters: ArgumentValues = None
     ) -> tuple[FloatArray, dict[str, FloatArray]] | None:
-        """The dx/dinputs, and d(position, quaternion)/dinputs of each tip; None where x is no regular equilibrium."""
+        """Return dx/dinputs, and d(position, quaternion)/dinputs of each tip; None if x is no regular equilibrium."""
         found = self._sensitivities(inputs, x, parameters)
         return None if found is None else (found[0].x, found[0].tips)
 
     def body_sensitivity(
         self, inputs: ArgumentValues, x: npt.ArrayLike, *, parameters: ArgumentValues = None
     ) -> dict[str, FloatArray] | None:
-        """The d(position, quaternion)/dinputs of each rigid body; None where x is no regular equilibrium."""
+        """Return d(position, quaternion)/dinputs of each rigid body; None if x is no regular equilibrium."""
         found = self._sensitivities(inputs, x, parameters)
         return None if found is None else found[0].bodies
 
     def stability(
         self, inputs: ArgumentValues, x: npt.ArrayLike, *, parameters: ArgumentValues = None
     ) -> CompiledStability | None:
-        """Whether an equilibrium is stable, for loads with a potential; None where x is no equilibrium.
+        """Judge the stability of an equilibrium, for loads with a potential; None if x is no equilibrium.
 
         Raises:
             AttributeError: the folder was exported without stability.
@@ -236,14 +236,14 @@ class Compiled(CompiledMotion):
     def parameter_sensitivity(
         self, inputs: ArgumentValues, x: npt.ArrayLike, *, parameters: ArgumentValues = None
     ) -> Sensitivity | None:
-        """Derivatives of an equilibrium with the parameters; None where x is no regular equilibrium."""
+        """Return the derivatives of an equilibrium by the parameters; None if x is no regular equilibrium."""
         found = self._sensitivities(inputs, x, parameters)
         return None if found is None else found[1]
 
     def _sensitivities(
         self, inputs: ArgumentValues, x: npt.ArrayLike, parameters: ArgumentValues
     ) -> tuple[Sensitivity, Sensitivity] | None:
-        """Derivatives with inputs and with parameters, which have no column where there are none."""
+        """Return derivatives by inputs and by parameters; without parameters the second ones have no columns."""
         given = *self._given(inputs, parameters), pointer(vector(x, self.size, "x"))
         rods, bodies = self._names.rods, self._names.bodies
         d_x = [np.zeros((count, self.size)) for count in (self.inputs.size, self.parameters.size)]
@@ -265,7 +265,7 @@ class Compiled(CompiledMotion):
         return by_inputs, by_parameters
 
     def _casadi_function(self, entry: dict[str, Any]) -> ca.Function:
-        """A function of the library, with derivatives where the folder holds them."""
+        """Return a function of the library, with derivatives if the folder has them."""
         external = entry.get("external")
         if external and self.differentiable:
             return ca.external(external, str(self.library))
@@ -283,5 +283,5 @@ class Compiled(CompiledMotion):
 
 
 def _argument(name: str, values: FloatArray) -> Any:
-    """An argument as C takes it: one that is a number by value."""
+    """Convert an argument for C: scalars are passed by value."""
     return ctypes.c_double(values[0]) if name in SCALAR_ARGUMENTS else pointer(values)

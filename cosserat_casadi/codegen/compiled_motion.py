@@ -1,4 +1,4 @@
-"""Motions by a compiled folder: a start at rest, steps of fixed length, their derivatives, the equations of motion."""
+"""Motions of a compiled folder: a start at rest, steps of fixed size, their derivatives, the equations of motion."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ class StepState:
 
     Attributes:
         x: unknowns, shape (size,).
-        v: their rates, shape (size,), 1/s; zero for multipliers and tensions.
-        a: their accelerations, shape (size,), 1/s²; the first guess of the next step.
+        v: rates of the unknowns, shape (size,), 1/s; zero for multipliers and tensions.
+        a: accelerations of the unknowns, shape (size,), 1/s²; they are the initial guess of the next step.
     """
 
     x: FloatArray
@@ -40,13 +40,13 @@ class CompiledStep:
     """A step of a motion by the solver in C.
 
     Attributes:
-        state: state at the end of the step; where it was not done, the state that was given.
-        status: how it ended.
-        iterations: Newton corrections, corrections of failed attempts too.
-        jacobians: Jacobians evaluated.
-        parts: into how many parts it was cut; 1 where it was taken whole.
+        state: state at the end of the step; if the step failed, the state at its start.
+        status: outcome of the step.
+        iterations: number of Newton corrections, including failed attempts.
+        jacobians: number of Jacobian evaluations.
+        parts: number of parts into which the step was cut; 1 for a whole step.
         residual: largest entry of the equations before the last correction.
-        error_left: displacement over the length that Newton's method leaves, foretold by its contraction.
+        error_left: remaining error of Newton's method by its contraction, as displacement over the length.
     """
 
     state: StepState
@@ -92,14 +92,14 @@ class StepContact:
 
 @dataclass(frozen=True)
 class StepSensitivity:
-    """Derivatives of x and v at the end of a step, stacked.
+    """Derivatives of the stacked x and v at the end of a step.
 
     Attributes:
-        by_start: by x and v at the start, shape (2 size, 2 size).
-        by_inputs: by the inputs at the start, shape (2 size, inputs).
-        by_inputs_rate: by their rates at the start, shape (2 size, inputs).
-        by_inputs_acceleration: by their accelerations in the step, shape (2 size, inputs).
-        by_parameters: by the parameters, which do not change, shape (2 size, parameters).
+        by_start: derivative by x and v at the start, shape (2 size, 2 size).
+        by_inputs: derivative by the inputs at the start, shape (2 size, inputs).
+        by_inputs_rate: derivative by the rates of the inputs at the start, shape (2 size, inputs).
+        by_inputs_acceleration: derivative by the accelerations of the inputs in the step, shape (2 size, inputs).
+        by_parameters: derivative by the parameters, which are constant, shape (2 size, parameters).
     """
 
     by_start: FloatArray
@@ -114,13 +114,13 @@ class LinearMotion:
     """Derivatives of the equations of motion at a state.
 
     Attributes:
-        stiffness: by x, shape (size, size).
-        damping: by v, shape (size, size), s.
-        mass: by a, shape (size, size), s².
-        by_inputs: by the inputs, shape (size, inputs).
-        by_inputs_rate: by their rates, shape (size, inputs).
-        by_inputs_acceleration: by their accelerations, shape (size, inputs).
-        by_parameters: by the parameters, shape (size, parameters).
+        stiffness: derivative by x, shape (size, size).
+        damping: derivative by v, shape (size, size), s.
+        mass: derivative by a, shape (size, size), s².
+        by_inputs: derivative by the inputs, shape (size, inputs).
+        by_inputs_rate: derivative by the rates of the inputs, shape (size, inputs).
+        by_inputs_acceleration: derivative by the accelerations of the inputs, shape (size, inputs).
+        by_parameters: derivative by the parameters, shape (size, parameters).
     """
 
     stiffness: FloatArray
@@ -137,9 +137,9 @@ class StepOptions:
     """Budget of one step.
 
     Attributes:
-        tolerance: displacement over the length that Newton's method may leave; 0 for what rounding allows.
+        tolerance: largest displacement error of Newton's method, over the length; 0 for rounding.
         iterations: most corrections of one attempt.
-        parts: most parts that a step is cut into.
+        parts: most parts into which a step is cut.
     """
 
     tolerance: float = STEP_TOLERANCE
@@ -149,23 +149,23 @@ class StepOptions:
 
 @dataclass(frozen=True)
 class StepMemory:
-    """Memory that steps of one motion keep and work in; its attributes are for the functions in C alone.
+    """Memory of the steps of one motion; its attributes are for the functions in C alone.
 
     Attributes:
-        kept: from one step to the next.
-        workspace: means nothing between two steps.
+        kept: data that one step hands to the next.
+        workspace: work memory, without meaning between two steps.
     """
 
     kept: Any
     workspace: Any
 
     def __reduce__(self) -> tuple[Callable[..., StepMemory], tuple[bytes, int]]:
-        """How pickle and copy make the memory anew: the workspace means nothing between two steps."""
+        """Rebuild the memory in pickled copies, with a new workspace."""
         return _memory_of, (bytes(self.kept), ctypes.sizeof(self.workspace))
 
 
 def _memory_of(kept: bytes, workspace_size: int) -> StepMemory:
-    """The memory of steps from the bytes that they keep and the size of their workspace."""
+    """Make the memory of steps from the bytes that they keep and the size of the workspace."""
     memory = StepMemory(room(len(kept)), room(workspace_size))
     ctypes.memmove(memory.kept, kept, len(kept))
     return memory
@@ -212,14 +212,14 @@ class _Info(ctypes.Structure):
 
 @dataclass(frozen=True)
 class _StepCall:
-    """A step by a function in C, ready to be called, as often as wanted: each call goes on from where one ended.
+    """A prepared call of the step in C, for any number of steps: each call starts where the last one ended.
 
     Attributes:
-        function: in C.
-        arguments: its arguments.
-        packed: the state, which the function moves.
-        info: how the last call ended.
-        kept: what the arguments point to and do not keep.
+        function: the function in C.
+        arguments: arguments of the function.
+        packed: the state, which the function updates.
+        info: outcome of the last call.
+        kept: objects to which the arguments point, kept alive here.
     """
 
     function: Any
@@ -229,7 +229,7 @@ class _StepCall:
     kept: tuple[Any, ...]
 
     def take(self) -> int:
-        """Take a step; the number of its status is returned."""
+        """Take a step, and return the number of its status."""
         return int(self.function(*self.arguments))
 
     @property
@@ -239,10 +239,10 @@ class _StepCall:
 
 
 class CompiledMotion(LoadedLibrary):
-    """Functions that a folder exported with ``dynamics=True`` offers beyond statics.
+    """Functions beyond statics of a folder that was exported with ``dynamics=True``.
 
-    Parameters are given by name or stacked; the scene's own are the default. They may change from one step to the next.
-    Its members raise an AttributeError where the folder was exported without.
+    Parameters are given by name or stacked, by default those of the scene. They may change from one step to the next.
+    Members raise an AttributeError if the folder was exported without dynamics.
     """
 
     @property
@@ -251,11 +251,11 @@ class CompiledMotion(LoadedLibrary):
         """Number of unknowns."""
 
     def step_memory(self) -> StepMemory:
-        """Memory that steps keep from one to the next, and work in: one for each motion, new for a new one."""
+        """Make the memory of the steps of one motion; each motion needs a new one."""
         return StepMemory(room(self._motion_function("step_memory_size")()), self._workspace())
 
     def contact_start(self) -> StepState:
-        """The start of the scene's motion at rest, at its own inputs, with what touches exactly then.
+        """Return the start of the scene's motion at rest, at the scene's inputs, with its exact contacts.
 
         Raises:
             AttributeError: the folder has no motions, or nothing in it touches exactly.
@@ -265,10 +265,10 @@ class CompiledMotion(LoadedLibrary):
         return self._unpacked(state)
 
     def step_contacts(self, memory: StepMemory) -> list[StepContact]:
-        """The contacts that press at the end of the last step.
+        """Return the contacts that press at the end of the last step.
 
         Args:
-            memory: of the steps.
+            memory: memory of the steps.
 
         Raises:
             AttributeError: the folder has no motions, or nothing in it touches exactly.
@@ -297,12 +297,12 @@ class CompiledMotion(LoadedLibrary):
         *,
         parameters: ArgumentValues = None,
     ) -> StepState | None:
-        """A state at rest; None where supports, joints or cables are not closed there.
+        """Make a state at rest; None if supports, joints or cables are not closed there.
 
         Args:
-            inputs: by name or stacked; the scene's own by default.
-            x: unknowns, such as of an equilibrium; the unloaded scene by default.
-            parameters: by name or stacked.
+            inputs: inputs by name or stacked; by default those of the scene.
+            x: unknowns, for example of an equilibrium; by default those of the unloaded scene.
+            parameters: parameters by name or stacked.
         """
         given = self._given(inputs, parameters)
         start = vector(np.zeros(self.size) if x is None else x, self.size, "x")
@@ -322,18 +322,18 @@ class CompiledMotion(LoadedLibrary):
         memory: StepMemory | None = None,
         options: StepOptions | None = None,
     ) -> CompiledStep:
-        """One step of a motion by Radau IIA with two stages.
+        """Take one step of a motion by Radau IIA with two stages.
 
         Args:
-            state: at the start.
-            dt: length of the step, s.
-            inputs: at the start, by name or stacked, shape (inputs,).
-            inputs_rate: at the start, shape (inputs,), per s; none by default.
-            inputs_acceleration: in the step, shape (inputs,), per s²; none by default. The step is refused without it
-                where a base, a length or a joint has a rate: its inertia forces would be missing.
-            parameters: by name or stacked.
-            memory: of the steps before, :meth:`step_memory`; it is written to.
-            options: when Newton's method is done.
+            state: state at the start.
+            dt: size of the step, s.
+            inputs: inputs at the start, by name or stacked, shape (inputs,).
+            inputs_rate: rates of the inputs at the start, shape (inputs,), per s; zero by default.
+            inputs_acceleration: accelerations of the inputs in the step, shape (inputs,), per s²; zero by default. The
+                step is refused without them if a base, a length or a joint has a rate: inertia forces would be missing.
+            parameters: parameters by name or stacked.
+            memory: memory of the steps before, from :meth:`step_memory`; it is updated.
+            options: budget of Newton's method.
         """
         given = _Given(inputs, inputs_rate, inputs_acceleration, parameters)
         call = self._prepared("step", state, dt, given, memory, options, [])
@@ -353,13 +353,13 @@ class CompiledMotion(LoadedLibrary):
         memory: StepMemory | None = None,
         options: StepOptions | None = None,
     ) -> tuple[CompiledStep, FloatArray, FloatArray]:
-        """Steps of one length, one after the other, while the inputs move with one acceleration.
+        """Take consecutive steps of one size while the inputs move with constant accelerations.
 
-        It does what as many calls of :meth:`step` do, which take their arguments apart each time. Inputs and their
-        rates are those at the start of the first step.
+        The result equals that of as many calls of :meth:`step`, which unpack their arguments each time. Inputs and
+        rates are taken at the start of the first step.
 
         Returns:
-            the last step, of which one that was not done ends all; the stacked inputs and their rates at its end.
+            the last step, where a failed step ends the sequence; the stacked inputs and their rates at its end.
 
         Raises:
             ValueError: the count is below 1.
@@ -395,7 +395,7 @@ class CompiledMotion(LoadedLibrary):
         memory: StepMemory | None = None,
         options: StepOptions | None = None,
     ) -> tuple[CompiledStep, StepSensitivity | None]:
-        """A step as by :meth:`step`, with the exact derivatives of its end; None where it has none or was not taken."""
+        """Take a step as by :meth:`step`, with the exact derivatives of its end; None without them or on a failure."""
         size = 2 * self.size
         by_start = np.zeros((size, size))
         derivatives, columns = self._input_derivatives(size)
@@ -409,7 +409,7 @@ class CompiledMotion(LoadedLibrary):
         return taken, StepSensitivity(by_start.T, **derivatives)
 
     def _input_derivatives(self, rows: int) -> tuple[dict[str, FloatArray], list[FloatArray]]:
-        """Room for derivatives by inputs and parameters, by name; their columns in the order of the functions in C."""
+        """Allocate derivatives by inputs and parameters, by name and as a list in the order of the C functions."""
         words = ("by_inputs", "by_parameters", "by_inputs_rate", "by_inputs_acceleration")
         counts = (self.inputs.size, self.parameters.size, self.inputs.size, self.inputs.size)
         columns = {word: np.zeros((count, rows)) for word, count in zip(words, counts, strict=True)}
@@ -428,7 +428,7 @@ class CompiledMotion(LoadedLibrary):
         *,
         parameters: ArgumentValues = None,
     ) -> FloatArray:
-        """Residual of the equations of motion, shape (size,): generalised forces that a motion asks for."""
+        """Evaluate the residual of the equations of motion, shape (size,): generalised forces that a motion needs."""
         residual = np.zeros(self.size)
         rates = self._changing(inputs_rate), self._changing(inputs_acceleration, "inputs_acceleration")
         given = *self._given(inputs, parameters), *rates
@@ -446,7 +446,7 @@ class CompiledMotion(LoadedLibrary):
         *,
         parameters: ArgumentValues = None,
     ) -> LinearMotion:
-        """Derivatives of the equations of motion at a state."""
+        """Linearise the equations of motion at a state."""
         stiffness, damping, mass = (np.zeros((self.size, self.size)) for _ in range(3))
         derivatives, columns = self._input_derivatives(self.size)
         results = [stiffness, damping, mass, *columns]
@@ -465,7 +465,7 @@ class CompiledMotion(LoadedLibrary):
         options: StepOptions | None,
         results: Sequence[FloatArray],
     ) -> _StepCall:
-        """A call of one of the two functions in C; inputs and rates that are arrays are read where they are."""
+        """Prepare a call of one of the two functions in C; inputs and rates that are arrays are read in place."""
         chosen = options or StepOptions()
         inputs = self.inputs.stacked(given.inputs)
         rates = self._changing(given.inputs_rate)
@@ -502,11 +502,11 @@ class CompiledMotion(LoadedLibrary):
         )
 
     def _changing(self, rates: npt.ArrayLike | None, name: str = "inputs_rate") -> Any:
-        """Rates or accelerations of the inputs as an argument in C, which is null for zero."""
+        """Convert rates or accelerations of the inputs to an argument in C, which is null for zero."""
         return None if rates is None else pointer(vector(rates, self.inputs.size, name))
 
     def _packed(self, state: StepState) -> FloatArray:
-        """A state as its struct in C."""
+        """Convert a state to its struct in C."""
         named = {"x": state.x, "v": state.v, "a": state.a}
         return np.concatenate([vector(value, self.size, name) for name, value in named.items()])
 

@@ -11,14 +11,14 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
 
 SOLVED = (Outcome.CONVERGED, Outcome.UNRESOLVED)
-"""Ends after which there is a solution for the inputs, if of the discrete equations alone."""
+"""Outcomes with a solution for the inputs, at least of the discrete equations."""
 
 Fields = Sequence[tuple[str, type[Any]]]
 """Names and types of the members of a struct."""
 
 
 class AnswerInfo(ctypes.Structure):
-    """The struct in C that says how a solve ended, whose answer may know its error."""
+    """The struct in C with the outcome of a solve, and the error of the answer if it is estimated."""
 
     _fields_: ClassVar[Fields] = (
         ("status", ctypes.c_int),
@@ -31,11 +31,11 @@ class AnswerInfo(ctypes.Structure):
 
 
 def judged_words(info: AnswerInfo, outcomes: Sequence[Outcome]) -> dict[str, Any]:
-    """Words that :class:`CompiledSolution` takes from the struct.
+    """Arguments of :class:`CompiledSolution` from the struct.
 
     Args:
         info: the struct.
-        outcomes: of the solver, in the order of their numbers.
+        outcomes: outcomes of the solver, in the order of their numbers.
     """
     words = {
         "outcome": outcomes[info.status],
@@ -51,7 +51,7 @@ def judged_words(info: AnswerInfo, outcomes: Sequence[Outcome]) -> dict[str, Any
 
 
 class TubeInfo(AnswerInfo):
-    """The struct in C that says how a call for concentric tubes ended, with the determinant."""
+    """The struct in C with the outcome of a call for concentric tubes, and the determinant."""
 
     _fields_ = (("determinant", ctypes.c_double),)
 
@@ -65,12 +65,12 @@ class CompiledStability:
     """Verdict of the library on the stability of an equilibrium.
 
     Attributes:
-        smallest_eigenvalue: of the second variation over the admissible variations, in units of EI/ℓ of the scene's
-            own numbers, whatever the parameters are.
+        smallest_eigenvalue: smallest eigenvalue of the second variation over the admissible variations, in units of
+            EI/ℓ of the scene's own numbers, for any parameters.
         negative: number of eigenvalues below zero.
         zero: number of eigenvalues that are zero to rounding.
-        verdict: ``stable``; ``neutral``, where some variations lead through equilibria alike at no cost; ``critical``,
-            where they lead to none; ``unstable``.
+        verdict: ``stable``; ``neutral`` if variations of zero energy lead through equivalent equilibria; ``critical``
+            if they do not; ``unstable``.
     """
 
     smallest_eigenvalue: float
@@ -80,12 +80,12 @@ class CompiledStability:
 
     @property
     def stable(self) -> bool:
-        """Whether a real rod stays there."""
+        """Whether a real rod stays in the equilibrium."""
         return self.verdict in ("stable", "neutral")
 
 
 class StabilityInfo(ctypes.Structure):
-    """The struct in C that says what eigenvalues mean."""
+    """The struct in C with the eigenvalues and the verdict."""
 
     _fields_ = (
         ("smallest_eigenvalue", ctypes.c_double),
@@ -102,17 +102,17 @@ class StabilityInfo(ctypes.Structure):
 
 @dataclass(frozen=True, kw_only=True)
 class CompiledAnswer:
-    """How a call of a solver in C ended.
+    """Outcome of a call of a solver in C.
 
     Attributes:
-        outcome: how it ended.
-        iterations: Newton steps tried.
-        jacobians: Jacobians factorised.
-        residual_norm: relative norm of the residual at x and the inputs asked for, reached or not.
-        load_factor: share of the load that x carries, or of the way of the inputs that was gone; 1 where it converged.
-        error_estimate: of the poses of tips and bodies, as distance over the length and as angle in rad, and of the
-            lengths of cables over the length; 1 where it is not known, None where it was not estimated.
-        tolerance: wanted error of the scene; None where no tolerance has a meaning.
+        outcome: the outcome.
+        iterations: number of Newton steps tried.
+        jacobians: number of factorised Jacobians.
+        residual_norm: relative norm of the residual at x and the requested inputs, reached or not.
+        load_factor: share of the load at x, or of the path of the inputs that was covered; 1 if the call converged.
+        error_estimate: estimated error of the poses of tips and bodies, as distance over the length and as angle, rad,
+            and of the lengths of cables over the length; 1 if unknown, None if it was not estimated.
+        tolerance: wanted error of the scene; None if no tolerance has a meaning.
     """
 
     outcome: Outcome
@@ -130,12 +130,12 @@ class CompiledAnswer:
 
     @property
     def message(self) -> str:
-        """A sentence that says how it ended."""
+        """Sentence on the outcome."""
         return self.outcome.value
 
     @property
     def within_tolerance(self) -> bool | None:
-        """Whether the estimated error is within the tolerance; None where there is no estimate or no tolerance."""
+        """Whether the estimated error is within the tolerance; None without an estimate or a tolerance."""
         if self.tolerance is None:
             return None
         if not self.converged:
@@ -151,8 +151,8 @@ class CompiledSolution(CompiledAnswer):
 
     Attributes:
         inputs: inputs of the solution, shape (m,).
-        x: unknowns; the last equilibrium on the way where it did not converge.
-        determinant: of concentric tubes that do not twist 1; 0 where they snap, negative where they cannot stay.
+        x: unknowns; the last equilibrium on the way if the call did not converge.
+        determinant: determinant of concentric tubes: 1 without twist, 0 where they snap, negative if unstable.
     """
 
     inputs: FloatArray
@@ -165,8 +165,8 @@ class CompiledTurn(CompiledSolution):
     """A turn of a control loop.
 
     Attributes:
-        derivatives: of position and quaternion of each tip with the inputs, shape (7, m), where they were asked for.
-        memory: what the next turn begins with.
+        derivatives: derivatives of position and quaternion of each tip by the inputs, shape (7, m), if requested.
+        memory: data with which the next turn begins.
     """
 
     derivatives: Mapping[str, FloatArray] | None = None
@@ -175,7 +175,7 @@ class CompiledTurn(CompiledSolution):
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """Derivatives of an equilibrium with some numbers, a column for each.
+    """Derivatives of an equilibrium by some numbers, a column for each.
 
     Attributes:
         x: derivatives of the unknowns, shape (size, columns).

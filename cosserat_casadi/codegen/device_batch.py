@@ -1,7 +1,7 @@
 """Batches of an exported folder on a GPU, experimental: the source that ``--cuda`` writes, compiled and called.
 
-Arrays of any library are taken where they lie, by DLPack: of CuPy, JAX, NumPy, PyTorch. The same source compiled for a
-processor, the device ``host``, computes the same rows in the same order, which tells of everything but the speed.
+Arrays of CuPy, JAX, NumPy, PyTorch and other libraries are used in place, by DLPack. Compiled for a processor, the
+device ``host``, the source computes the rows in equal order, which tests everything except the speed.
 """
 
 from __future__ import annotations
@@ -35,16 +35,16 @@ FLAGS = {
 """Flags of compilers by device; an architecture in a command, such as ``nvcc -arch=sm_90``, comes after them."""
 
 NVCC_OF_WHEELS = "nvidia/*/bin/nvcc"
-"""Where the wheels of NVIDIA have the compiler, in the folder of packages."""
+"""Path of the compiler in NVIDIA's wheels, relative to the folder of packages."""
 
 DLPACK_DEVICES = {HOST: (1, 3), CUDA: (2, 13)}
-"""Numbers of memory in DLPack that each device reads: of the processor, pinned; of the GPU, managed."""
+"""Kinds of memory that each device reads, by their numbers in DLPack: processor and pinned; GPU and managed."""
 
 KINDS = {0: "int", 2: "float"}
 """Types of numbers by their code in DLPack."""
 
 THREADS, ROOM = 16_384, 4e9
-"""Rows that a GPU solves at once unless said otherwise, and bytes that their workspaces take at most."""
+"""Default number of rows that a GPU solves at once, and largest size of their workspaces, bytes."""
 
 SOLVE_TABLE = {
     "inputs": "inputs",
@@ -60,7 +60,7 @@ SOLVE_TABLE = {
     "d_x_d_inputs": "d_x_d_inputs",
     "d_poses_d_inputs": "d_poses_d_inputs",
 }
-"""Pointers in the table of a solve, in their order in C, and of what shape each is."""
+"""Pointers in the table of a solve, in their order in C, and the kind of shape of each."""
 
 STEP_TABLE = {
     "inputs": "inputs",
@@ -80,17 +80,17 @@ STEP_TABLE = {
     "d_end_d_inputs_rate": "d_end_d_inputs",
     "d_end_d_inputs_acceleration": "d_end_d_inputs",
 }
-"""Pointers in the table of a step, in their order in C, and of what shape each is."""
+"""Pointers in the table of a step, in their order in C, and the kind of shape of each."""
 
 NEEDED = frozenset({"inputs", "parameters", "x", "status", "state", "memory"})
 """Pointers that may not be null."""
 
 
 class Array(Protocol):
-    """An array that says where it lies."""
+    """An array with the DLPack protocol."""
 
     def __dlpack__(self, *, stream: Any = None) -> Any:
-        """A capsule with a ``DLTensor``."""
+        """Return a capsule with a ``DLTensor``."""
         ...
 
 
@@ -117,10 +117,10 @@ class DeviceBatch:
 
     Attributes:
         library: the shared object.
-        manifest: of the folder.
+        manifest: manifest of the folder.
         device: ``cuda`` or ``host``.
         single: whether numbers are float instead of double.
-        threads: rows that are solved at once.
+        threads: number of rows that are solved at once.
     """
 
     library: Path
@@ -130,21 +130,21 @@ class DeviceBatch:
     threads: int = 1
 
     def solve(self, *, stream: int = 0, **arrays: Array | None) -> None:
-        """Equilibria of many load cases from the unloaded scene, written into the arrays of the call.
+        """Solve for equilibria of many load cases from the unloaded scene; the arrays of the call receive them.
 
-        For m inputs, p parameters, n unknowns and k rows: ``inputs`` (m, k), ``parameters`` (p, k) where the scene has
-        some, ``x`` (n, k) and ``status`` (k), whose numbers the header lists. Other arrays may be left out:
+        For m inputs, p parameters, n unknowns and k rows, the arrays are ``inputs`` (m, k), ``parameters`` (p, k) if
+        the scene has some, ``x`` (n, k) and ``status`` (k), whose values the header lists. Optional arrays are
         ``iterations``, ``jacobians``, ``residual_norm``, ``load_factor``, ``error_estimate`` (k); ``results`` (r, k),
         poses of tips and bodies, efforts and conjugates of actuators; ``d_x_d_inputs`` (k, m, n); ``d_poses_d_inputs``
-        (k, poses, m, 7). On a GPU the call returns before they are written.
+        (k, poses, m, 7). On a GPU the call returns before the arrays are written.
 
         Args:
             stream: address of a CUDA stream; the default one by default.
-            **arrays: by these names, of contiguous numbers on the device.
+            **arrays: arrays by these names, contiguous and on the device.
 
         Raises:
             ValueError: an array is missing, unknown, or of the wrong type, shape or place.
-            ExportError: the device refuses; there may be no GPU.
+            ExportError: the device reports an error; there may be no GPU.
         """
         self._run("solve", SOLVE_TABLE, [], arrays, stream)
 
@@ -158,21 +158,21 @@ class DeviceBatch:
         stream: int = 0,
         **arrays: Array | None,
     ) -> None:
-        """One step of many motions, written into the arrays of the call.
+        """Take one step of many motions; the arrays of the call receive the results.
 
-        ``inputs`` (m, k), ``parameters`` (p, k); ``state`` (3 n, k), x, v and a, before and after; ``memory``
-        (k, :attr:`memory_size`), bytes, zeros before the first step; ``status`` (k). Other arrays may be left out:
+        The arrays are ``inputs`` (m, k), ``parameters`` (p, k); ``state`` (3 n, k), with x, v and a, updated in place;
+        ``memory`` (k, :attr:`memory_size`), bytes, zeros before the first step; ``status`` (k). Optional arrays are
         ``inputs_rate``, ``inputs_acceleration`` (m, k); ``iterations``, ``jacobians``, ``parts``, ``residual``,
-        ``error_left`` (k); ``d_end_d_start`` (k, 2 n, 2 n), transposed as columns stand together; ``d_end_d_inputs``,
+        ``error_left`` (k); ``d_end_d_start`` (k, 2 n, 2 n), transposed, as columns are contiguous; ``d_end_d_inputs``,
         ``d_end_d_inputs_rate``, ``d_end_d_inputs_acceleration`` (k, m, 2 n).
 
         Args:
-            dt: length of the step, s.
-            tolerance: as of a step in C, and so the next two: all three, or none for the defaults.
-            max_iterations: of one attempt.
-            max_parts: into which a step may be cut.
+            dt: size of the step, s.
+            tolerance: tolerance of Newton's method in C; set all three options, or none for the defaults.
+            max_iterations: most iterations of one attempt.
+            max_parts: most parts into which a step may be cut.
             stream: address of a CUDA stream.
-            **arrays: by these names.
+            **arrays: arrays by these names.
 
         Raises:
             AttributeError: the folder has no motions.
@@ -193,20 +193,20 @@ class DeviceBatch:
 
     @property
     def workspace_size(self) -> int:
-        """Bytes of the workspace of a thread."""
+        """Size of the workspace of a thread, bytes."""
         return self._sizes[0]
 
     @property
     def memory_size(self) -> int:
-        """Bytes that a motion keeps between its steps; 0 where the folder has no motions."""
+        """Size of the memory of a motion between its steps, bytes; 0 if the folder has no motions."""
         return self._sizes[2]
 
     def rows(self, inputs: np.ndarray[Any, Any], parameters: np.ndarray[Any, Any] | None = None) -> dict[str, Any]:
-        """Answers to load cases in NumPy, by the names of :meth:`solve`, through memory of the device.
+        """Solve load cases in NumPy arrays, copied through device memory; results by the names of :meth:`solve`.
 
         Args:
             inputs: shape (k, m).
-            parameters: shape (k, p); None where the scene has none.
+            parameters: shape (k, p); None for a scene without parameters.
 
         Raises:
             ValueError: a table is missing, or of the wrong shape.
@@ -240,7 +240,7 @@ class DeviceBatch:
 
     @property
     def dtype(self) -> Any:
-        """Type of the numbers of arrays."""
+        """NumPy type of the numbers in arrays."""
         return np.float32 if self.single else np.float64
 
     @property
@@ -263,7 +263,7 @@ class DeviceBatch:
 
     @cached_property
     def _sizes(self) -> list[int]:
-        """Bytes of a workspace, numbers of a row of results, bytes of the memory of a motion."""
+        """Bytes of a workspace, count of numbers in a row of results, bytes of the memory of a motion."""
         sizes = (ctypes.c_size_t * 3)()
         self._function("device_sizes")(sizes)
         return list(sizes)
@@ -319,7 +319,7 @@ class DeviceBatch:
         arrays: Mapping[str, Array | None],
         stream: int,
     ) -> None:
-        """Call a function on arrays, each of which is looked at."""
+        """Call a function on arrays, after a check of each array."""
         if word == "step" and not self.memory_size:
             raise AttributeError("export the folder with motions: export(..., dynamics=True)")
         given = {name: array for name, array in arrays.items() if array is not None}
@@ -336,10 +336,10 @@ class DeviceBatch:
         self._call(word, members, settings, addresses, count, stream)
 
     def _capsule(self, name: str, array: Array, stream: int) -> Any:
-        """The capsule of an array, once the stream may use its memory.
+        """Return the capsule of an array, ordered after earlier work on its memory by the stream.
 
         Raises:
-            ValueError: it says nothing, or may not be written to.
+            ValueError: the array has no such protocol, or is read-only.
         """
         if not hasattr(array, "__dlpack__"):
             raise ValueError(f"{name} must be an array with __dlpack__, got {type(array).__name__}")
@@ -349,10 +349,10 @@ class DeviceBatch:
             raise ValueError(f"{name} gives no memory: {error}") from None
 
     def _address(self, name: str, tensor: _Tensor, kind: str, count: int) -> int:
-        """Address of the numbers of an array.
+        """Return the address of the numbers of an array.
 
         Raises:
-            ValueError: their type, shape or place is wrong.
+            ValueError: the type, the shape or the memory of the array is wrong.
         """
         shape = tuple(tensor.shape[i] for i in range(tensor.axes))
         wanted = self._shape(kind, count)
@@ -407,11 +407,11 @@ def load_batch(
 
     Args:
         directory: a folder that was exported with ``cuda=True``.
-        device: ``cuda``, or ``host`` for the same source on a processor.
+        device: ``cuda``, or ``host`` to run the source on a processor.
         compiler: a command, such as ``nvcc -arch=sm_90``; by default nvcc of the path or of the extra ``cuda``.
         single: whether to compute in float.
-        threads: rows that are solved at once; each takes a workspace of the device. By default one on the host, and on
-            a GPU as many as is usual and fit into a few gigabytes.
+        threads: number of rows that are solved at once; each takes a workspace of the device. By default one on the
+            host, and on a GPU a usual number that fits into a few gigabytes.
 
     Raises:
         ExportError: the folder has no batches on a GPU, there is no compiler, or it fails.
@@ -458,7 +458,7 @@ def batch_of(
 
 
 def find_nvcc(wanted: str | None = None) -> str:
-    """Command of the compiler for GPUs: the wanted one, the one on the path, or the one in the wheels of NVIDIA.
+    """Find the command of the compiler for GPUs: the wanted one, the one on the path, or the one in NVIDIA's wheels.
 
     Raises:
         ExportError: there is none.
@@ -473,7 +473,7 @@ def find_nvcc(wanted: str | None = None) -> str:
 
 
 def check_gpu() -> None:
-    """Refuse a machine without a GPU that its driver knows.
+    """Refuse a machine whose driver finds no GPU.
 
     Raises:
         ExportError: there is none.
@@ -499,14 +499,14 @@ def _bytes_of(array: np.ndarray[Any, Any]) -> tuple[int, int]:
 
 
 def _contiguous(shape: tuple[int, ...], strides: list[int]) -> bool:
-    """Whether numbers stand one after the other; strides of axes of one entry mean nothing."""
+    """Whether numbers are contiguous; strides of axes with one entry have no meaning."""
     apart = [int(np.prod(shape[i + 1 :])) for i in range(len(shape))]
     placed = all(own == wanted or size == 1 for own, wanted, size in zip(strides, apart, shape, strict=True))
     return placed or 0 in shape
 
 
 def _tensor_of(capsule: Any) -> _Tensor:
-    """The tensor in a capsule of DLPack."""
+    """Read the tensor in a capsule of DLPack."""
     pointer = ctypes.pythonapi.PyCapsule_GetPointer
     pointer.restype = ctypes.c_void_p
     pointer.argtypes = [ctypes.py_object, ctypes.c_char_p]

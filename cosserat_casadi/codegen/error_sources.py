@@ -1,4 +1,4 @@
-"""The words of the sources that estimate the error of an answer: equilibrium/answer_error.py in C."""
+"""Words in the templates of error estimates: equilibrium/answer_error.py in C."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ BLINDNESS = "blind_turns.c"
 ERROR_FILES = (BLINDNESS, "solver_error.c")
 
 STEPS_OF_ESTIMATE = 1
-"""Steps that the estimate takes into the updates of the Jacobian that Newton has left."""
+"""Number of the estimate's steps that update the last Jacobian of Newton's method."""
 
 FOLLOWED = 0.5
-"""Length of the second step over the first step's, up to which the Jacobian that Newton has left is believed."""
+"""Largest ratio of the second step's length to the first at which the last Jacobian of Newton's method serves."""
 
 BALANCE = "richer_balance"
 WATCHED = "watched"
 KERNELS = (BALANCE, WATCHED)
-"""The kernels that a library has which estimates errors."""
+"""Kernels of a library that estimates errors."""
 
 
 def estimates_errors(names: Names) -> bool:
@@ -35,11 +35,11 @@ def estimates_errors(names: Names) -> bool:
 
 
 def error_words(model: Model, names: Names) -> Words:
-    """Words of a library, with the estimate where the library has its kernels.
+    """Words of a library about error estimates, which it makes if it has the kernels.
 
     Args:
         model: the exported model.
-        names: what things are called.
+        names: names of the library and its parts.
     """
     if not estimates_errors(names):
         return {"error_reals": 0}

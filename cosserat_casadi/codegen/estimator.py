@@ -1,4 +1,4 @@
-"""A model as C that answers rows of measurements with the inputs that explain them: what an estimate computes with."""
+"""C library of a model that maps rows of measurements to the inputs that explain them, for estimates."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.arrow_least_squares import Limits
 
 NAME = "estimate"
-"""Beginning of every symbol of the libraries that estimate."""
+"""Prefix of every symbol of the libraries that estimate."""
 
 ENDINGS = ("found", "no_equilibrium", "singular", "not_found")
-"""How the search for a row can end, in the order of the numbers in C."""
+"""Outcomes of the search for a row, in the order of their numbers in C."""
 
 JUDGED = ("outcome", "iterations", "cost")
 """First columns of every row of results."""
@@ -40,7 +40,7 @@ class Knowledge:
 
     Attributes:
         limits: bounds and priors.
-        size: typical sizes, shape (unknowns,).
+        size: typical sizes of the unknowns, shape (unknowns,).
     """
 
     limits: Limits
@@ -48,14 +48,14 @@ class Knowledge:
 
     @property
     def vectors(self) -> tuple[FloatArray, ...]:
-        """Lower and upper bounds, means, weights and sizes, as functions in C take them."""
+        """Lower and upper bounds, means, weights and sizes, as arguments of functions in C."""
         limits = self.limits
         return limits.lower, limits.upper, limits.mean, limits.weight, self.size
 
     def with_held(self, values: FloatArray) -> Knowledge:
-        """Knowledge of these unknowns, and of numbers behind them that are held at values, shape (q,).
+        """Append further numbers that are held at given values, shape (q,), to the unknowns.
 
-        The cost of priors of what all rows share is counted once, not for each row: held numbers have none.
+        The prior of numbers that all rows share is counted once, not for each row: held numbers have no prior cost.
         """
         nothing = np.zeros_like(values)
         held = Limits(values, values, nothing, nothing, np.zeros(len(values), dtype=bool))
@@ -65,14 +65,14 @@ class Knowledge:
 
 @dataclass(frozen=True)
 class MeasuredCases:
-    """Rows of cases.
+    """Measured cases, as rows.
 
     Attributes:
-        inputs: stacked inputs and the parameters behind them, the unknown ones with the values to begin with, shape
+        inputs: stacked inputs and parameters, the unknown ones with their initial values, shape
             (cases, inputs + parameters).
-        at: abscissae, shape (cases, sections).
+        at: abscissae of the measured sections, shape (cases, sections).
         measured: measured numbers, shape (cases, numbers).
-        weights: one over the standard deviation of each difference, 0 where it was not measured, (cases, rows).
+        weights: inverse standard deviation of each difference, 0 if it was not measured, shape (cases, rows).
     """
 
     inputs: FloatArray
@@ -81,23 +81,23 @@ class MeasuredCases:
     weights: FloatArray
 
     def part(self, rows: slice | npt.NDArray[np.int64]) -> MeasuredCases:
-        """Some of the cases."""
+        """Select some of the cases."""
         return MeasuredCases(self.inputs[rows], self.at[rows], self.measured[rows], self.weights[rows])
 
 
 @dataclass(frozen=True)
 class Estimates:
-    """Estimates of rows of cases; NaN where a search has ended without.
+    """Estimates of measured cases; NaN where a search has failed.
 
     Attributes:
-        outcome: how each search ended, as its place in ENDINGS, shape (cases,).
-        iterations: steps, shape (cases,).
-        cost: half the sum of squares, in squared standard deviations, the prior's among them, shape (cases,).
-        unknowns: shape (cases, k).
-        information: of data and prior, the inverse of the covariance, shape (cases, k, k).
-        gradient: of the cost, zero but for unknowns at their bounds, shape (cases, k).
-        residuals: differences in standard deviations, 0 where nothing was measured, shape (cases, rows).
-        x: the equilibria, shape (cases, size).
+        outcome: outcome of each search as an index of ENDINGS, shape (cases,).
+        iterations: number of steps, shape (cases,).
+        cost: half the sum of squares, including the prior, in squared standard deviations, shape (cases,).
+        unknowns: estimated unknowns, shape (cases, k).
+        information: inverse of the covariance, of data and prior, shape (cases, k, k).
+        gradient: gradient of the cost, zero except for unknowns at their bounds, shape (cases, k).
+        residuals: differences in standard deviations, 0 if not measured, shape (cases, rows).
+        x: unknowns of the equilibria, shape (cases, size).
     """
 
     outcome: npt.NDArray[np.int64]
@@ -111,7 +111,7 @@ class Estimates:
 
     @classmethod
     def of_columns(cls, results: FloatArray, k: int, size: int) -> Estimates:
-        """The results of the function in C, a row for each case, of k numbers in a model of so many unknowns."""
+        """Split the results of the function in C, a row for each case, with k estimates and ``size`` unknowns."""
         rows = results.shape[1] - len(JUDGED) - 2 * k - k * k - size
         ends = np.cumsum([len(JUDGED), k, k * k, k, rows])
         judged, unknowns, information, gradient, residuals, x = np.split(results, ends, axis=1)
@@ -127,7 +127,7 @@ class Estimates:
         )
 
     def first(self, count: int) -> Estimates:
-        """Estimates of the first numbers alone, all other numbers held."""
+        """Return the estimates of the first numbers, for all other numbers held."""
         return replace(
             self,
             unknowns=self.unknowns[:, :count],
@@ -137,13 +137,13 @@ class Estimates:
 
     @classmethod
     def joined(cls, parts: Sequence[Estimates]) -> Estimates:
-        """Chunks of cases as one."""
+        """Join estimates of consecutive cases."""
         arrays = ([getattr(part, field.name) for part in parts] for field in fields(cls))
         return cls(*map(np.concatenate, arrays))
 
     @classmethod
     def chosen(cls, runs: Sequence[Estimates], run: npt.NDArray[np.int64]) -> Estimates:
-        """Each case from the run that is chosen for it, shape (cases,)."""
+        """Take each case from the run with its index in ``run``, shape (cases,)."""
         cases = np.arange(len(run))
         arrays = ([getattr(one, field.name) for one in runs] for field in fields(cls))
         return cls(*(np.array(of_runs)[run, cases] for of_runs in arrays))
@@ -155,9 +155,9 @@ class EstimatorLibrary:
 
     Attributes:
         files: content by file name, as pairs.
-        unknowns: numbers that are found in each case.
-        rows: differences between model and measurement in each case.
-        size: unknowns of the model.
+        unknowns: number of estimated numbers in each case.
+        rows: number of differences between model and measurement in each case.
+        size: number of unknowns of the model.
     """
 
     files: tuple[tuple[str, str], ...]
@@ -166,7 +166,7 @@ class EstimatorLibrary:
     size: int
 
     def estimate(self, cases: MeasuredCases, known: Knowledge) -> Estimates:
-        """The estimates that explain the cases best; other threads run meanwhile.
+        """Compute the estimates that explain the cases best; other threads run meanwhile.
 
         Raises:
             ExportError: there is no C compiler, or it fails.
@@ -185,14 +185,14 @@ class EstimatorLibrary:
     def costs(
         self, cases: MeasuredCases, inputs: FloatArray, x: FloatArray, known: Knowledge, steps: FloatArray
     ) -> FloatArray:
-        """Costs some steps away from estimates, shape (cases, draws); infinite where there is no equilibrium.
+        """Compute costs at some steps from estimates, shape (cases, draws); infinite without an equilibrium.
 
         Args:
-            cases: as for :meth:`estimate`.
+            cases: cases as for :meth:`estimate`.
             inputs: the estimates with all other inputs and parameters, shape (cases, inputs + parameters).
-            x: their equilibria, shape (cases, size).
-            known: as there; outside its bounds a cost is infinite.
-            steps: of the unknowns, shape (cases, draws, k).
+            x: unknowns of the equilibria at the estimates, shape (cases, size).
+            known: prior knowledge as for :meth:`estimate`; outside its bounds a cost is infinite.
+            steps: changes of the estimated numbers, shape (cases, draws, k).
 
         Raises:
             ExportError: there is no C compiler, or it fails.
@@ -211,17 +211,17 @@ class EstimatorLibrary:
 def estimator_library(
     model: Model, measured: ca.Function, indices: Sequence[int], kind: Sequence[Any]
 ) -> EstimatorLibrary:
-    """Sources of the solver of a model with a function that estimates inputs.
+    """Write sources of the solver of a model with a function that estimates inputs.
 
     Args:
         model: the measured model; its parameters are further inputs here.
-        measured: (x, inputs, at, measured) ↦ the differences between model and measurement, and their derivatives with
-            x and with the numbers that are found. Behind the inputs stand the parameters.
-        indices: of these numbers among the stacked inputs and parameters.
-        kind: all that tells this function from others of the model.
+        measured: (x, inputs, at, measured) ↦ differences between model and measurement, and their derivatives by x and
+            by the estimated numbers. Parameters are appended to the inputs.
+        indices: indices of the estimated numbers among the stacked inputs and parameters.
+        kind: data that distinguish this function from others of the model.
 
     Raises:
-        ExportError: two things of the scene would have one name in C.
+        ExportError: two parts of the scene would have one name in C.
     """
     made_from = (estimator_library.__name__, model, kind)
     files = kept_texts(NAME, made_from, lambda: _texts(model, measured, indices))
@@ -229,7 +229,7 @@ def estimator_library(
 
 
 def _texts(model: Model, measured: ca.Function, indices: Sequence[int]) -> dict[str, str]:
-    """Sources and headers of :func:`estimator_library`."""
+    """Write the sources and headers of :func:`estimator_library`."""
     names = model_names(NAME, model)
     parts = assembled(model, names)
     generated = kernel_sources(kernels(model, names, parts), names)

@@ -1,4 +1,4 @@
-"""A model as a folder of C sources that needs neither Python nor CasADi."""
+"""Export of a model as a folder of C sources that need neither Python nor CasADi."""
 
 from __future__ import annotations
 
@@ -57,29 +57,29 @@ def export(
     """Write a scene or a model as a folder of C99 sources: equations with Jacobians, solver, demo, build file, README.
 
     Args:
-        model: of rods, with its discretisation, or of concentric tubes, with its steps; or a scene, which is exported
-            as the model that :func:`cosserat_casadi.solve` solves it with.
-        directory: the folder, new, empty, or of an earlier export; its name is the library's unless given.
-        name: what every symbol begins with, a C identifier.
-        error_estimate: error of the tip pose at the scene's inputs relative to the length, for the manifest.
-        verified: over which ranges the discretisation keeps the tolerance, for header, README and manifest.
-        derivatives: whether the equations are written once more with first and second derivatives, for CasADi: what
-            :func:`cosserat_casadi.load` needs for an optimisation. A controller does not; it is twice as much again. In
-            exact contact these equations are written for each arrangement of contacts.
-        dynamics: whether the folder holds motions too: a step of fixed length with its derivatives, inverse dynamics
-            and their linearisation.
-        stability: whether it holds the function that says whether an equilibrium is stable.
-        batches: whether its function for many load cases solves them four at a time in the vectors of the processor,
-            where the equations have a form for that; a compiler takes about twice as long. Without that, cases are
-            solved one after the other; in exact contact there is that function with it alone.
-        cuda: whether the folder holds the source of batches on a GPU too. Experimental: it was never run on one.
-        load_cases: stacked inputs, a row for each case, shape (k, m), or with parameters behind them, (k, m + p): of a
-            scene in exact contact the library knows the arrangements of contacts that it meets on the way from its own
-            inputs and parameters to each case, one after the other.
-        period: time, s, that the longest turn of a control loop may take: by default it may evaluate what fits, as is
-            measured with the compiler of this machine, or foreseen where there is none.
-        estimate_errors: whether the library estimates the errors of its answers; the code of its kernels is about half
-            as long again.
+        model: model of rods, with its discretisation, or of concentric tubes, with its steps; or a scene, which is
+            exported as the model with which :func:`cosserat_casadi.solve` solves it.
+        directory: the folder, new, empty, or of an earlier export; its name is the default name of the library.
+        name: prefix of every symbol, a C identifier.
+        error_estimate: error of the tip pose at the scene's inputs, over the length, for the manifest.
+        verified: ranges over which the discretisation keeps the tolerance, for header, README and manifest.
+        derivatives: whether the equations are also written with first and second derivatives, for CasADi, as
+            :func:`cosserat_casadi.load` needs them for an optimisation. A controller does not need them; they are twice
+            as long as the rest. In exact contact they are written for each arrangement of contacts.
+        dynamics: whether the folder also contains motions: a step of fixed size with its derivatives, inverse dynamics
+            and its linearisation.
+        stability: whether it contains the function that judges the stability of an equilibrium.
+        batches: whether its function for many load cases solves four at a time in the vectors of the processor, if the
+            equations have a form for that; compiling takes about twice as long. Without it, cases are solved one after
+            the other; in exact contact, the function exists only with it.
+        cuda: whether the folder also contains the source of batches on a GPU. Experimental: it was never run on one.
+        load_cases: stacked inputs, a row for each case, shape (k, m), or with appended parameters, (k, m + p). The
+            library of a scene in exact contact has the arrangements of contacts on the path from the scene's own inputs
+            and parameters to each case in turn.
+        period: time, s, that the longest turn of a control loop may take. The default budget of a turn is then as large
+            as fits, by measurement with the compiler of this machine, or by a cost model without a compiler.
+        estimate_errors: whether the library estimates the errors of its answers; its kernels are then half as long
+            again.
 
     Returns:
         the folder.
@@ -127,7 +127,7 @@ def export(
 
 
 def _solved(scene: Scene) -> tuple[Model | TubeFunctions, float | None]:
-    """The model that a scene is solved with at its inputs, and the estimated error there.
+    """Solve a scene at its inputs; return the model of the solution and its estimated error.
 
     Raises:
         ExportError: there is no equilibrium.
@@ -175,10 +175,10 @@ def folder_files(
     period: float | None = None,
     estimate_errors: bool = True,
 ) -> dict[str, str]:
-    """Text of every file that :func:`export` writes of a model; the manifest, which lists these files, is last.
+    """Write the text of every file that :func:`export` writes for a model; the manifest, which lists them, is last.
 
     Raises:
-        ExportError: the scene has no motion, and that is asked for.
+        ExportError: motions are requested, but the scene has none.
     """
     if dynamics:
         check_motion(model, on_device=cuda)
@@ -212,10 +212,10 @@ def folder_files(
 
 
 def check_period(scene: Scene, period: float | None) -> None:
-    """Refuse a period that is none, or for a library whose turns are not bounded by a period.
+    """Refuse an invalid period, or a period for a library whose turns it does not bound.
 
     Raises:
-        ExportError: it is no positive number of seconds, or the scene is in exact contact.
+        ExportError: the period is not a positive number of seconds, or the scene is in exact contact.
     """
     if period is None:
         return

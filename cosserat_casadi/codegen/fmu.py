@@ -1,7 +1,7 @@
-"""A scene in motion as an FMU: a model that other simulators step, by the Functional Mock-up Interface 3.0.
+"""Export of a scene in motion as an FMU, which other simulators step by the Functional Mock-up Interface 3.0.
 
-The archive holds a library for this machine, and the sources that it was compiled from. Two XML files say what the
-variables are, and how the sources are compiled.
+The archive contains a library for this machine and its sources. Two XML files describe the variables, and how the
+sources are compiled.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from cosserat_casadi.numerics.progress import StageProgress
 from cosserat_casadi.scene.input_fields import column_suffixes
 
 STEP_NAME = "step"
-"""Name of the parameter that is the step of the integrator."""
+"""Name of the parameter with the step of the integrator."""
 
 COURSE = " Set for the end of a communication step; moves there in it, with a rate that does not jump."
 """Sentence of the description of a base or a length on its values."""
@@ -44,7 +44,7 @@ COURSE = " Set for the end of a communication step; moves there in it, with a ra
 SUFFIX = ".fmu"
 
 STEP = 1e-3
-"""Step of the integrator where the scene names none, s."""
+"""Default step of the integrator, s."""
 
 FMI_SOURCES = (
     "fmi3.c",
@@ -57,16 +57,16 @@ FMI_SOURCES = (
     "fmi3_derivatives.c",
     "fmi3_missing.c",
 )
-"""Files of the folder ``c`` that an FMU includes, as they are."""
+"""Files of the folder ``c`` that an FMU includes unchanged."""
 
 ARCHITECTURES = {"amd64": "x86_64", "arm64": "aarch64"}
-"""Names of machines that the standard spells in another way."""
+"""Names of architectures that the standard spells differently."""
 
 SUFFIXES = {"linux": ".so", "darwin": ".dylib", "windows": ".dll"}
-"""Endings of the names of libraries."""
+"""Suffixes of shared libraries by system."""
 
 EPOCH = (1980, 1, 1, 0, 0, 0)
-"""Time of every file in the archive: the same scene gives the same bytes."""
+"""Time stamp of every file in the archive, so that equal scenes give equal bytes."""
 
 
 def check_fmu(path: str | os.PathLike[str]) -> None:
@@ -93,20 +93,19 @@ def write_fmu(
 ) -> Path:
     """Write a model in motion as an FMU for co-simulation, with directional derivatives.
 
-    Its inputs are the scene's; its outputs are poses and velocities of tips and bodies, efforts of actuators and what
-    these do work on. It begins at rest, in the equilibrium of its inputs, or in the unloaded shape where the scene
-    starts there or has a free base. Over a communication step loads move in a straight line to the value that is
-    set, bases and lengths with rates that do not jump. Its parameters are the scene's, and the longest step of the
-    integrator.
+    Its inputs are those of the scene; its outputs are poses and velocities of tips and bodies, efforts of actuators and
+    their conjugates. It begins at rest, in the equilibrium at its inputs, or in the unloaded shape if the scene starts
+    there or has a free base. Over a communication step, loads change linearly to the value that is set, and bases and
+    lengths with continuous rates. Its parameters are those of the scene, and the longest step of the integrator.
 
     Args:
         model: a model that was built with its motion.
         path: the file, ending in ``.fmu``.
-        name: what every symbol begins with, a C identifier.
-        error_estimate: as for :func:`cosserat_casadi.export`.
-        verified: as for :func:`cosserat_casadi.export`.
+        name: prefix of every symbol, a C identifier.
+        error_estimate: error of the tip pose, as for :func:`cosserat_casadi.export`.
+        verified: ranges of the tolerance, as for :func:`cosserat_casadi.export`.
         compiler: C compiler; by default the command in the environment variable CC, then cc, gcc, clang, python-zig.
-        progress: told the file that is compiled, the number of compiled files, and of all.
+        progress: callback with the file under compilation, the number of compiled files, and of all files.
 
     Raises:
         ExportError: the file, the name or a motion of this scene is refused, there is no compiler, or it fails; nothing
@@ -143,7 +142,7 @@ def write_fmu(
 
 
 def _fmu_sources(model: Model, names: Names, outputs: MotionOutputs, step: float) -> dict[str, str]:
-    """Sources of an FMU besides the library: its interface, and the kernels of its outputs."""
+    """Write the sources of an FMU besides the library: its interface, and the kernels of its outputs."""
     functions = [
         kernel(model, outputs.function, names.kernel("motion_outputs")),
         kernel(model, outputs.jacobian, names.kernel("motion_outputs_jacobian")),
@@ -174,7 +173,7 @@ def _fmu_sources(model: Model, names: Names, outputs: MotionOutputs, step: float
 
 
 def _parameter_words(model: Model, names: Names) -> dict[str, str | int]:
-    """How many parameters there are, their values, and how functions of the library take them."""
+    """Words for the number of parameters, their values, and their place in calls of the library."""
     count = model.parameters.size
     arguments = {
         "parameters": "parameters",
@@ -190,12 +189,12 @@ def _parameter_words(model: Model, names: Names) -> dict[str, str | int]:
 
 
 def _starts_unloaded(model: Model) -> bool:
-    """Whether the motion begins in the unloaded shape: bases that are free have no equilibrium."""
+    """Whether the motion begins in the unloaded shape, as it does with free bases, which have no equilibrium."""
     return any(rod.base.free for rod in model.scene.rods) or model.scene.starts_unloaded
 
 
 def _token(sources: Mapping[str, str]) -> str:
-    """Token by which a description belongs to a library: a hash of all sources."""
+    """Token that ties a description to a library: a hash of all sources."""
     digest = hashlib.sha256()
     for file in sorted(sources):
         digest.update(f"{file}\0{sources[file]}\0".encode())
@@ -223,11 +222,11 @@ class Variable:
     """A variable of an FMU; its value reference is its place in the list of all.
 
     Attributes:
-        name: dotted.
+        name: dotted name.
         unit: SI unit.
         description: one sentence.
         causality: "independent", "input", "output" or "parameter".
-        start: value where none is set; None of a computed variable.
+        start: default value; None for a computed variable.
     """
 
     name: str
@@ -238,12 +237,12 @@ class Variable:
 
 
 def variables(model: Model, outputs: Sequence[MotionOutput], step: float) -> list[Variable]:
-    """All variables in the order of their value references: time, inputs, outputs, step, parameters of the scene.
+    """List all variables in the order of their value references: time, inputs, outputs, step, parameters of the scene.
 
     Args:
         model: the model.
         outputs: the outputs of its motion.
-        step: of the integrator, s.
+        step: step of the integrator, s.
     """
     listed = [Variable("time", "s", "Time.", "independent")]
     for entry, _ in model.inputs:
@@ -265,14 +264,14 @@ def variables(model: Model, outputs: Sequence[MotionOutput], step: float) -> lis
 
 
 def model_description(model: Model, name: str, token: str, listed: Sequence[Variable], step: float) -> bytes:
-    """The file ``modelDescription.xml``.
+    """Write the file ``modelDescription.xml``.
 
     Args:
         model: the model.
         name: identifier in C.
-        token: tells that this description belongs to the library.
+        token: token that ties the description to the library.
         listed: all variables.
-        step: of the integrator, s.
+        step: step of the integrator, s.
     """
     root = ElementTree.Element(
         "fmiModelDescription",
@@ -330,7 +329,7 @@ def _variable_element(reference: int, variable: Variable) -> ElementTree.Element
 
 
 def build_description(name: str, sources: Sequence[str]) -> bytes:
-    """The file ``sources/buildDescription.xml``.
+    """Write the file ``sources/buildDescription.xml``.
 
     Args:
         name: identifier in C.

@@ -1,4 +1,4 @@
-"""A folder of generated files: written whole or not at all, and never over what someone else put there."""
+"""A folder of generated files, written completely or not at all, and never over foreign files."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cosserat_casadi.files import write_atomically
 
 
 def check_folder(directory: Path) -> set[str]:
-    """Refuse a folder that holds files which an export did not write.
+    """Refuse a folder with files that an export did not write.
 
     Args:
         directory: the folder; it need not exist.
@@ -73,7 +73,7 @@ def _restore(directory: Path, written: set[str], before: Mapping[str, bytes]) ->
 
 
 def _listed(directory: Path) -> set[str]:
-    """Names of the files of an earlier export; none where the manifest is damaged or someone else's."""
+    """Names of the files of an earlier export; empty if the manifest is damaged or foreign."""
     try:
         described = read_manifest(directory)
         files, versions = described["files"], described["versions"]

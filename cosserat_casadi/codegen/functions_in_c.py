@@ -1,6 +1,6 @@
-"""The functions of a model that a library in C holds, as the table of functions says: prototypes and wrappers of each.
+"""The functions of a model in a C library, by the table of functions: their prototypes and wrappers.
 
-The kernels of the solver are wired by hand in its source. All others are functions of the header: a comment, a
+The source of the solver calls its kernels directly. All other kernels are functions of the header: a comment, a
 prototype and a wrapper, which follow from the entry of the table alone.
 """
 
@@ -33,16 +33,16 @@ COUNTS = {"x": "UNKNOWNS", "inputs": "INPUTS", "v": "UNKNOWNS", "inputs_rate": "
 """Macros of the header with the number of entries of an argument."""
 
 TANGENT = "path_tangent"
-"""The function whose kernel is a table of numbers."""
+"""Name of the function whose kernel is a table of numbers."""
 
 WORDS_IN_C = {PARAMETERS: "parameters"}
-"""Names of arguments that say more in C than in Python."""
+"""Names of arguments that are longer in C than in Python."""
 
 WIDTH = 119
-"""Characters of the longest line of the header."""
+"""Number of characters of the longest line of the header."""
 
 UNBROKEN = "\xa0"
-"""A blank at which no line is broken."""
+"""Non-breaking space."""
 
 
 @dataclass(frozen=True)
@@ -50,10 +50,10 @@ class FunctionInC:
     """A function of the scene, of a rod, of an actuator or of a body.
 
     Attributes:
-        spec: its entry in the table.
+        spec: entry of the function in the table.
         owner: name of the rod, the actuator or the body; None for the scene.
-        model: whose function it is.
-        names: what things are called in C.
+        model: the model of the function.
+        names: names of the library and its parts in C.
     """
 
     spec: FunctionSpec
@@ -78,7 +78,7 @@ class FunctionInC:
 
     @cached_property
     def function(self) -> ca.Function:
-        """The CasADi function with the outputs that it has in C; to the solver parameters are further inputs."""
+        """The CasADi function with its outputs in C; for functions of the solver, parameters are further inputs."""
         if self.spec.kernel and not self.spec.public:
             return solver_function(self.model, self.spec)
         return self.spec.function_in_c(self.model, self.owner or "")
@@ -90,7 +90,7 @@ class FunctionInC:
 
     @cached_property
     def outputs(self) -> tuple[Output, ...]:
-        """The outputs that it has in C."""
+        """The outputs of the function in C."""
         outputs = self.spec.outputs_of(self.model.discrete, self.owner or "")
         return outputs[: self.spec.kernel_outputs]
 
@@ -102,7 +102,7 @@ class FunctionInC:
 
     @property
     def description(self) -> str:
-        """Sentence on the function, its arguments beyond unknowns and inputs, and its results, with sizes and units."""
+        """Sentence on the function, its arguments other than unknowns and inputs, its results, with sizes and units."""
         sentence = self.spec.header.format(owner=self.owner)
         results = ", ".join(self._described(i, output) for i, output in enumerate(self.outputs))
         given = ", ".join(self._given())
@@ -111,7 +111,7 @@ class FunctionInC:
         return f"{sentence} Gives {results}."
 
     def prototype(self, basics: Mapping[str, Any]) -> str:
-        """Comment and prototype of the header, from the words of the library."""
+        """Write comment and prototype for the header, with the words of the library."""
         real = f"{self.names.name}_real"
         words = {
             "comment": _filled(f"/* {self.description} */"),
@@ -120,7 +120,7 @@ class FunctionInC:
         return render("function.h.in", {**basics, **words})
 
     def wrapper(self, basics: Mapping[str, Any]) -> str:
-        """Definition, a call of the kernel, from the words of the library."""
+        """Write the definition, a call of the kernel, with the words of the library."""
         arguments = [f"&{name}" if name in SCALAR_ARGUMENTS else _word(name) for name in self.arguments]
         words = {
             "signature": _wrapped(f"void {self.symbol}(", self._parameters("real"), ") {"),
@@ -138,7 +138,7 @@ class FunctionInC:
         return parameters + [f"{real} *{output.name}" for output in self.outputs]
 
     def _given(self) -> list[str]:
-        """Arguments beyond unknowns and inputs, with size and unit."""
+        """Arguments besides unknowns and inputs, with size and unit."""
         described = []
         for i, name in enumerate(self.arguments):
             if name not in COUNTS:
@@ -159,7 +159,7 @@ class FunctionInC:
 
 
 def functions_in_c(model: Model, names: Names) -> list[FunctionInC]:
-    """All functions with a kernel: of the scene, then rod by rod, actuator by actuator, body by body."""
+    """List all functions with a kernel: of the scene, then rod by rod, actuator by actuator, body by body."""
     kernels = [spec for spec in names.functions if spec.kernel]
     # Every rod, actuator and body has the functions of its kind.
     specs = [spec for spec in kernels if spec.owner is not Owner.SCENE or spec.function_of(model) is not None]
@@ -170,12 +170,12 @@ def functions_in_c(model: Model, names: Names) -> list[FunctionInC]:
 
 
 def public_functions(model: Model, names: Names) -> list[FunctionInC]:
-    """The functions of the header, but for the solver's."""
+    """List the functions of the header, except those of the solver."""
     return [function for function in functions_in_c(model, names) if function.spec.public]
 
 
 def differentiable_functions(model: Model, names: Names) -> list[FunctionInC]:
-    """The functions that a loaded folder gives with derivatives."""
+    """List the functions that have derivatives in a loaded folder."""
     return _functions(model, names, [spec for spec in names.functions if spec.differentiable])
 
 
@@ -200,13 +200,13 @@ def _with_facts(name: str, shape: str, unit: str) -> str:
 
 
 def _filled(comment: str) -> str:
-    """A comment in lines, none of which ends within parentheses."""
+    """Break a comment into lines, none of which ends within parentheses."""
     unbroken = re.sub(r"\([^)]*\)", lambda match: match[0].replace(" ", UNBROKEN), comment)
     return _in_lines(unbroken, "   ")
 
 
 def _wrapped(head: str, parameters: Sequence[str], end: str) -> str:
-    """A signature in lines, broken between parameters."""
+    """Break a signature into lines between parameters."""
     listed = ", ".join(parameter.replace(" ", UNBROKEN) for parameter in parameters)
     return _in_lines(f"{head.replace(' ', UNBROKEN)}{listed}{end.replace(' ', UNBROKEN)}", "    ")
 

@@ -26,11 +26,11 @@ class ListedValue:
     """An input or a parameter of an exported folder.
 
     Attributes:
-        name: as the scene spells it.
-        unit: SI unit, "1" without.
+        name: name in the scene.
+        unit: SI unit, "1" if dimensionless.
         default: the scene's value, shape (components, places along the rod or degrees).
-        lower: least value of each entry, stacked, shape (size,); -inf where there is none.
-        upper: largest value of each entry, stacked, shape (size,); inf where there is none.
+        lower: least value of each entry, stacked, shape (size,); -inf without a bound.
+        upper: largest value of each entry, stacked, shape (size,); inf without a bound.
     """
 
     name: str
@@ -61,20 +61,20 @@ class ListedInputs(ListedValues):
 
     @cached_property
     def lower(self) -> FloatArray:
-        """Least values by what inputs are and by the bounds of the scene, shape (size,); -inf where there is none."""
+        """Least values by the kinds of inputs and the bounds of the scene, shape (size,); -inf without a bound."""
         return np.concatenate([np.zeros(0), *(entry.lower for entry in self.entries)])
 
     @cached_property
     def upper(self) -> FloatArray:
-        """Largest values, shape (size,); inf where there is none."""
+        """Largest values, shape (size,); inf without a bound."""
         return np.concatenate([np.zeros(0), *(entry.upper for entry in self.entries)])
 
     def stacked(self, values: ArgumentValues = None, name: str = "inputs") -> FloatArray:
         """All inputs as one vector, shape (size,).
 
         Args:
-            values: by name or stacked.
-            name: what a message calls them.
+            values: values by name or stacked.
+            name: word for the values in messages.
 
         Raises:
             SceneError: a name is unknown, or its value has another size or is not finite.
@@ -92,7 +92,7 @@ class ListedParameters(ListedValues):
     """The parameters of an exported folder, stacked into one vector p.
 
     Attributes:
-        scene: text of the scene that the folder was made from, which judges values that are given by name.
+        scene: text of the exported scene, by which values that are given by name are checked.
     """
 
     scene: str = ""
@@ -101,7 +101,7 @@ class ListedParameters(ListedValues):
     several = "parameters"
 
     def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:
-        """The stacked vector, from the argument and, for parameters that it does not name, the scene's values.
+        """Stack the parameters, with the scene's values for parameters that are not named.
 
         Raises:
             SceneError: a name is unknown, a value has another shape, or the scene refuses it.
@@ -112,7 +112,7 @@ class ListedParameters(ListedValues):
         return p
 
     def _judge(self, p: FloatArray) -> None:
-        """Ask the scene about values, unless it was asked about the same values last."""
+        """Check values by the scene, unless the last check was of these values."""
         last = p.tobytes()
         if self._layout is None or self.__dict__.get("_accepted") == last:
             return
@@ -122,7 +122,7 @@ class ListedParameters(ListedValues):
 
     @cached_property
     def _layout(self) -> tuple[Scene, ParameterLayout] | None:
-        """The scene and its parameters; None where the folder has no scene that can be read."""
+        """The scene and its parameters; None if the folder has no readable scene."""
         try:
             scene = parse_scene(self.scene)
         except SceneError:
@@ -146,10 +146,10 @@ class ListedParameters(ListedValues):
         return p
 
     def passed(self, values: ArgumentValues = None) -> list[Any]:
-        """The argument of functions in C; none where the scene has no parameters.
+        """Return the argument of functions in C as a list, which is empty for a scene without parameters.
 
         Raises:
-            SceneError: as :meth:`stacked`.
+            SceneError: the values are refused, as by :meth:`stacked`.
         """
         p = self.stacked(values)
         return [pointer(p)] if self.size else []
@@ -170,13 +170,13 @@ class ListedParameters(ListedValues):
 
 
 def listed_values(entries: Sequence[Mapping[str, Any]]) -> tuple[ListedValue, ...]:
-    """Inputs or parameters of a manifest.
+    """Read the inputs or parameters of a manifest.
 
     Raises:
-        KeyError: something is missing.
-        OverflowError: a value is beyond all range.
-        TypeError: a name, a unit or a shape is none.
-        ValueError: values are no numbers, or not so many as their shape says.
+        KeyError: an entry is missing.
+        OverflowError: a value is too large for a number.
+        TypeError: a name, a unit or a shape has the wrong type.
+        ValueError: values are not numbers, or their count does not match the shape.
     """
     values = []
     for entry in entries:
@@ -190,12 +190,12 @@ def listed_values(entries: Sequence[Mapping[str, Any]]) -> tuple[ListedValue, ..
 
 
 def listed_parameters(entries: Sequence[Mapping[str, Any]], scene: str = "") -> ListedParameters:
-    """The parameters of a manifest, with the text of the scene that judges them."""
+    """Read the parameters of a manifest, with the text of the scene that checks their values."""
     return ListedParameters(listed_values(entries), scene)
 
 
 def _ends(listed: Sequence[float | None] | None, none: float, size: int) -> FloatArray:
-    """Ends of the range of each entry; where the manifest has none, this value."""
+    """Bounds of all entries, shape (size,), with the value ``none`` where the manifest has no bound."""
     if listed is None:
         return np.full(size, none)
     return np.array([none if value is None else value for value in listed], dtype=float)

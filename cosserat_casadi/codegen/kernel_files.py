@@ -1,4 +1,4 @@
-"""Kernels of a library as files in C, and its functions with derivatives for ``casadi.external``."""
+"""C files of the kernels of a library, and of its functions with derivatives for ``casadi.external``."""
 
 from __future__ import annotations
 
@@ -29,26 +29,26 @@ ON_DEVICE = """#ifdef SOLVER_DEVICE
 #define CASADI_SYMBOL_EXPORT SOLVER_DEVICE
 #endif
 """
-"""How kernels are declared where the source of a batch on a GPU includes them."""
+"""Declarations of kernels for the source of batches on a GPU, which includes them."""
 
 
 def kernel_sources(
     kernels: Sequence[Kernel], names: Names, stem: str | None = None, *, on_device: bool = False
 ) -> dict[str, str]:
-    """Source and header of the kernels by file name; they compute in float when the library does.
+    """Write source and header of the kernels, by file name; they compute in float if the library does.
 
     Args:
         kernels: the kernels.
-        names: of the library.
-        stem: of the file names.
-        on_device: whether compilers for GPUs are to take them too.
+        names: names of the library.
+        stem: stem of the file names.
+        on_device: whether compilers for GPUs must accept them too.
     """
     prologue = QUIET + OF_A_LIBRARY.format(macro=names.macro) + (ON_DEVICE if on_device else "")
     return printed_files(kernels, stem or f"{names.name}_kernels", "int", prologue, on_device=on_device)
 
 
 def derivative_source(functions: Sequence[ca.Function], names: Names) -> dict[str, str]:
-    """Source of a library's functions with derivatives, for ``casadi.external``, by file name."""
+    """Write the source of a library's functions with derivatives, for ``casadi.external``, by file name."""
     stem = f"{names.name}_derivatives"
     # casadi.external expects the integers that CasADi itself was built with.
     written = external_sources(functions, stem, "long long int")

@@ -1,4 +1,4 @@
-"""The generated kernels: which functions of a model become straight-line C, columns, parts of rods, or loops."""
+"""The generated kernels: a function of a model becomes straight-line C, columns, parts of rods, or loops."""
 
 from __future__ import annotations
 
@@ -28,33 +28,33 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.watched import watched_owners
 
 PARTED = ("path_residual", "path_jacobian")
-"""Functions of which an assembly has parts instead, one for each rod."""
+"""Functions that an assembly replaces by parts, one for each rod."""
 
 RATE = "path_rate"
-"""A function of an assembly with an entry for each unknown, as the residual has."""
+"""Name of a function that, like the residual, has an entry for each unknown."""
 
 SELDOM = ("igm", "energies", "momentum", error_sources.BALANCE)
-"""Functions that Newton's method does not call: where they are long, they are in loops, whose C is shorter."""
+"""Functions that Newton's method does not call; long ones are written with loops, whose C is shorter."""
 
 OF_SECTIONS = ("tip_jacobian",)
-"""Derivatives of the pose of a section, by columns where that is shorter than straight-line code."""
+"""Derivatives of the pose of a section, written by columns if that is shorter than straight-line code."""
 
 MOST_BESIDE_STEPS = 20_000
-"""Statements up to which a Jacobian of statics is written by columns where a folder has steps of motions, too.
+"""Most statements of a static Jacobian that is written by columns in a folder that also has motions.
 
-Compilers would take most of their time for it, and steps do without it.
+A longer one would take most of the time to compile, and steps do not use it.
 """
 
 
 SHORT = 400
 """Instructions of a function up to which it shares kernels with short ones alone.
 
-Handing over what long ones need would take a fifth of its time.
+To hand over the values that long functions need would take a fifth of its time.
 """
 
 
 def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionInC | None = None) -> list[Kernel]:
-    """The functions of the solver in C, with dense outputs; an assembly has its equations in parts."""
+    """Make the functions of the solver in C, with dense outputs; an assembly has its equations in parts."""
     wanted = functions_in_c(model, names)
     of_motion: list[Kernel] = [] if motion is None else list(motion.kernels)
     if motion is not None:
@@ -84,7 +84,7 @@ def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionI
 
 
 def _unlike(model: Model, entry: FunctionInC, plain: ca.Function, shared: ca.Function) -> Kernel:
-    """A function of one rod of an assembly: where it shares no code with others it is written as for one rod alone."""
+    """Write a function of one rod of an assembly: as for one rod alone, unless it shares code with others."""
     if shared is not plain or plain.n_instructions() <= STRAIGHT:
         return shared
     alone = _written(model, entry, STRAIGHT)
@@ -92,7 +92,7 @@ def _unlike(model: Model, entry: FunctionInC, plain: ca.Function, shared: ca.Fun
 
 
 def _judging(model: Model, entry: FunctionInC, parts: Assembled) -> ca.Function:
-    """A function that judges the error of an answer of an assembly; rods that compute alike share code."""
+    """Write a function for the error estimate of an assembly; rods with equal instructions share code."""
     discrete = model.discrete
     numbers = {name: number for number, name in enumerate((*discrete.rods, *discrete.bodies))}
     unknowns = parts.blocks.parts
@@ -109,13 +109,13 @@ def _judging(model: Model, entry: FunctionInC, parts: Assembled) -> ca.Function:
 
 
 def _of_owners(function: ca.Function, owners: Sequence[int], name: str, most: int) -> ca.Function:
-    """A column whose owners' entries share code where they are alike; in loops where the others are longer."""
+    """Write a function with one column, whose owners share code if their instructions are equal; else with loops."""
     straight = in_one(function, owners, name, most)
     return with_dense_results(function, name) if straight is None else straight
 
 
 def _parameter_kernels(model: Model, names: Names, parts: Assembled | None) -> list[ca.Function]:
-    """The function of the solver for parameters; none where the scene names none."""
+    """Make the function of the solver for parameters, as a list, empty for a scene without parameters."""
     if not model.parameters.size:
         return []
     name = names.kernel("parameter_rate")
@@ -126,7 +126,7 @@ def _parameter_kernels(model: Model, names: Names, parts: Assembled | None) -> l
 
 
 def _of_one_rod(model: Model, names: Names, entries: Sequence[FunctionInC], most_in_columns: int) -> list[Kernel]:
-    """The functions of a scene that has no parts, a Jacobian of at most so many statements by columns.
+    """Make the functions of a scene without parts, with a Jacobian by columns if it has at most so many statements.
 
     Functions in straight-line code call kernels of the values that they share (shared_values.py).
     """
@@ -153,7 +153,7 @@ def _of_one_rod(model: Model, names: Names, entries: Sequence[FunctionInC], most
 
 
 def _written(model: Model, entry: FunctionInC, most_in_columns: int) -> ca.Function | ColumnedFunction:
-    """A function of a scene that has no parts: by columns, in straight-line code, or in loops."""
+    """Write a function of a scene without parts: by columns, as straight-line code, or with loops."""
     if chooses(entry.function):
         return with_dense_results(entry.function, entry.kernel)
     if entry.spec.name == "path_jacobian":
@@ -176,20 +176,20 @@ def _written(model: Model, entry: FunctionInC, most_in_columns: int) -> ca.Funct
 def by_columns(
     written: WrittenJacobian, function: ca.Function, name: str, most: int = MOST_IN_COLUMNS
 ) -> ColumnedFunction | None:
-    """A Jacobian of one rod by columns; None where it has no such form, or one of too many statements.
+    """Write a Jacobian of one rod by columns; None if it has no such form, or one with too many statements.
 
     Args:
         written: the Jacobian.
-        function: the Jacobian as it is called in C.
-        name: its name in C.
-        most: statements up to which it is wanted.
+        function: the Jacobian with its signature in C.
+        name: name of the Jacobian in C.
+        most: largest number of statements.
     """
     form = in_columns(written, name, most)
     return None if form is None else _within(form, with_dense_results(function, name), most)
 
 
 def _within(form: ColumnForm, signature: ca.Function, most: int) -> ColumnedFunction | None:
-    """A form under a signature; None where it takes more statements, or an operation has no form in fours."""
+    """Give a form a signature; None if it has more statements, or an operation without a form for four numbers."""
     columned = ColumnedFunction(form, signature)
     try:
         return columned if columned.printed.statements <= most else None
@@ -198,12 +198,12 @@ def _within(form: ColumnForm, signature: ca.Function, most: int) -> ColumnedFunc
 
 
 def _literal(model: Model) -> bool:
-    """Whether rotations solve the literal linear system, with pivoting: it has no scalar form."""
+    """Whether rotations solve the literal linear system with pivoting, which has no scalar form."""
     return any(chosen.transport == "permuted" for chosen in model.discretisation.values())
 
 
 def kernel(model: Model, function: ca.Function, name: str, straight_within: int = STRAIGHT) -> ca.Function:
-    """A function under its name in C: of scalars within so many instructions, else of matrices, which become loops."""
+    """Make a function with its name in C: in scalars up to so many instructions, else in matrices that become loops."""
     if not _literal(model) and not chooses(function):
         straight = scalar(function, name, straight_within)
         if straight is not None:
@@ -212,12 +212,12 @@ def kernel(model: Model, function: ca.Function, name: str, straight_within: int 
 
 
 def scalar(function: ca.Function, name: str, most: int) -> ca.Function | None:
-    """A function as scalar instructions with dense outputs, constants folded and common terms shared.
+    """Write a function in scalars with dense outputs, constants folded and common terms shared.
 
     Args:
-        function: of matrices.
-        name: its name in C.
-        most: instructions up to which it is wanted; None stands for a longer one.
+        function: the function in matrices.
+        name: name of the function in C.
+        most: largest number of instructions; the result is None for a longer function.
     """
     symbols = function.sx_in()
     expressions = list(function.call(symbols))
@@ -229,9 +229,9 @@ def scalar(function: ca.Function, name: str, most: int) -> ca.Function | None:
 
 
 def differentiable(model: Model, names: Names) -> list[ca.Function]:
-    """Each function with its forward and reverse derivatives, and the forward derivative of its reverse derivative.
+    """Make each function with its forward and reverse derivatives, and the forward derivative of the reverse one.
 
-    They are named as ``casadi.external`` looks for them.
+    They have the names for which ``casadi.external`` searches.
     """
     functions = []
     for entry in differentiable_functions(model, names):
@@ -240,6 +240,6 @@ def differentiable(model: Model, names: Names) -> list[ca.Function]:
 
 
 def with_derivatives(plain: ca.Function) -> list[ca.Function]:
-    """A function, its forward and reverse derivatives, and the forward derivative of its reverse derivative."""
+    """Return a function, its forward and reverse derivatives, and the forward derivative of the reverse one."""
     reverse = plain.reverse(1)
     return [plain, plain.forward(1), reverse, reverse.forward(1)]

@@ -1,4 +1,4 @@
-"""Kernels that compute several rows at once: the same C with vectors of the processor in place of its numbers.
+"""Kernels that compute several rows at once: their C with vectors of the processor in place of numbers.
 
 ``NAME_solve_batch`` of a library with lanes solves its cases side by side, and so do the rows of large sweeps.
 """
@@ -26,27 +26,27 @@ from cosserat_casadi.compiling.texts import render, resource
 from cosserat_casadi.model.build import Model
 
 EQUATIONS = ("residual", "jacobian", "rate", "tangent", "resolution_index")
-"""Words in the names of the kernels that solve a row."""
+"""Words in the names of the kernels in lanes, by which rows are solved."""
 
 STRAIGHT_IN_LANES = 60_000
-"""Instructions of a kernel up to which rows are solved side by side. Its code is without loops, which has no memory to
-go through: what makes it slow, its length, four rows share. Loops in lanes are slower than rows one after the other,
-whose Jacobians have their columns in lanes (``benchmarks/row_cost.py``)."""
+"""Most instructions of a kernel by which rows are solved side by side. Its code has no loops and passes through no
+arrays: its cost is its length, which four rows share. Loops in lanes are slower than rows one after the other, whose
+Jacobians have their columns in lanes (``benchmarks/row_cost.py``)."""
 
 ROWS_TOGETHER = 16
-"""Rows under way at a time: enough rows wait for the same kernel."""
+"""Number of rows under way at a time, so that enough rows wait for each kernel."""
 
 FILES = ("lanes.h", "lanes_arithmetic.h", "lanes_linear.c", "lanes.c")
-"""Files of the folder ``c`` that a library with lanes has, as they are."""
+"""Files of the folder ``c`` that a library with lanes contains unchanged."""
 
 
 @dataclass(frozen=True)
 class InLanes:
-    """Files and words that a library with lanes has beside files and words of every library.
+    """Additional files and words of a library with lanes.
 
     Attributes:
         files: sources and headers by name.
-        words: of the batch in the library's own source and header.
+        words: words for batches in the library's own source and header.
     """
 
     files: Mapping[str, str]
@@ -54,12 +54,12 @@ class InLanes:
 
 
 def lanes_files(name: str) -> tuple[str, str]:
-    """Names of the source and header of a library's equations in lanes."""
+    """Return the file names of the source and header of a library's equations in lanes."""
     return f"{name}_lanes.c", f"{name}_lanes.h"
 
 
 def in_lanes(model: Model, names: Names) -> InLanes | None:
-    """Files and words that solve cases side by side; None for a model whose cases are solved one after the other."""
+    """Make files and words to solve cases side by side; None for a model whose cases are solved one after the other."""
     # An assembly is eliminated rod after rod, which has no form for lanes.
     if blocks(model.discrete, model.path_jacobian.sparsity_out(0)) is not None:
         return None
@@ -91,7 +91,7 @@ def in_lanes(model: Model, names: Names) -> InLanes | None:
 
 
 def _batch_words(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str, Any]:
-    """Words of the batch: its memory, and what depends on whether the scene names parameters."""
+    """Words for batches: their memory, and the arguments with or without parameters."""
     has_parameters = model.parameters.size > 0
     tangent = "solved_tangent_in_lanes.c.in" if has_parameters else "tangent_in_lanes.c.in"
     row = "batch->inputs + (size_t)i * INPUTS"

@@ -66,7 +66,7 @@ SOLVER_FILES = (
     *(*ROD_FILES, LEAST_MISFIT, SECOND_VARIATION),
 )
 VERBATIM = frozenset({*SOLVER_FILES, *FOURS, *PROGRAM, *lanes.FILES})
-"""Files of the folder ``c`` that sources of a library include."""
+"""Files of the folder ``c`` that the sources of a library include."""
 
 LINES = r"#ifdef (?:{words})\n(?:(?!#).*\n)*(?:#else\n((?:(?!#).*\n)*))?#endif\n"
 """Lines in C that are compiled where one of some words is defined, and in its group the lines in their place."""
@@ -75,21 +75,21 @@ TEMPLATES = ("library.h.in", "library.c.in", "config.h.in", "demo.c.in")
 """Templates of header, source, configuration and demo."""
 
 COMMENT_WIDTH = 120
-"""Characters of a line in a comment."""
+"""Number of characters of a line in a comment."""
 
 PLAIN_BUILD = dict.fromkeys(("more_sources", "more_compiled", "more_headers"), "")
-"""Words of the build file and the README of a folder that knows neither float nor OpenMP, and has no more sources."""
+"""Words of the build file and README of a folder without float, OpenMP and further sources."""
 
 SIDE_BY_SIDE = "four load cases at a time, in vectors of the processor"
 ONE_BY_ONE = "one load case after the other: these equations have no form for several at once"
-"""How a function solves many load cases, for header, README and manifest."""
+"""Sentence on the order of many load cases, for header, README and manifest."""
 
 RANGES_OF_RODS = (
     "a tension not below zero and a length above, and by the bounds of the scene. The\n"
     "   solver looks at none: a tension below zero pushes along its path, as no cable does, and the solution is one "
     "all the same."
 )
-"""Which ranges inputs have, and what the solver does beyond them, for the header."""
+"""Sentence on the ranges of inputs, and on the solver beyond them, for the header."""
 
 ROLES = {
     "{name}.h": "what you include: sizes, inputs, status, every function",
@@ -154,16 +154,16 @@ ROLES = {
 
 @dataclass(frozen=True)
 class FolderContents:
-    """The parts of a folder that stand beside the solver.
+    """The optional parts of a folder besides the solver.
 
     Attributes:
         generated: source and header of the kernels by file name.
         parts: the equations of an assembly in parts; None for one rod.
-        motion: the equations of motion, where the folder has them.
-        rows: the solver of batches side by side, where the folder has it.
+        motion: the equations of motion; None without them.
+        rows: the solver of batches side by side; None without it.
         beside: further files by name, such as files for stability or for derivatives.
-        on_device: whether it holds batches on a GPU.
-        batches: whether its function for many load cases was asked for.
+        on_device: whether the folder contains batches on a GPU.
+        batches: whether the function for many load cases was requested.
     """
 
     generated: Mapping[str, str]
@@ -176,7 +176,7 @@ class FolderContents:
 
     @property
     def batch_order(self) -> str:
-        """The order in which it solves many load cases; empty where that was not asked for."""
+        """Sentence on the order in which many load cases are solved; empty if that was not requested."""
         if self.rows is not None:
             return SIDE_BY_SIDE
         return ONE_BY_ONE if self.batches else ""
@@ -193,7 +193,7 @@ class FolderContents:
         return (*SHARED, *estimate, *passages, *linear, *motion, *contact, *friction, *rods)
 
     def to_compile(self, names: Names) -> dict[str, str]:
-        """Words of the build file for sources and headers that a plain folder does not have."""
+        """Words of the build file for further sources and headers."""
         source, header = f"{names.name}_stability.c", f"{names.name}_stability.h"
         lanes_source = "" if self.rows is None else f" {names.name}_lanes.c"
         return {
@@ -211,15 +211,15 @@ def library_sources(
     verified: Verified | None = None,
     budget: TurnBudget = ALWAYS,
 ) -> dict[str, str]:
-    """Hand-readable files of a folder by name.
+    """Write the files of a folder other than the kernels, by name.
 
     Args:
         model: the exported model.
-        names: what things are called.
-        contents: the parts that stand beside the solver.
-        error_estimate: of the tip's pose at the scene's inputs, relative to the length.
-        verified: over which ranges the discretisation keeps the tolerance; None where that is not known.
-        budget: what a turn of a control loop may take by default.
+        names: names of the library and its parts.
+        contents: optional parts of the folder.
+        error_estimate: error of the tip pose at the scene's inputs, over the length.
+        verified: ranges over which the discretisation keeps the tolerance; None if unknown.
+        budget: default budget of a turn of a control loop.
     """
     words = _words(model, names, contents) | accuracy_words(model.scene, error_estimate, verified)
     words |= {
@@ -239,7 +239,7 @@ def library_sources(
 
 
 def device_files(name: str) -> tuple[str, str]:
-    """Names of the source and the header of batches on a GPU."""
+    """Return the file names of the source and header of batches on a GPU."""
     return f"{name}_batch.cu", f"{name}_batch.h"
 
 
@@ -249,7 +249,7 @@ def rendered(
     templates: Sequence[str] = TEMPLATES,
     beside: Collection[str] = (),
 ) -> dict[str, str]:
-    """Files that every folder has, by name: header, source, configuration, demo, build file, README, and the solver.
+    """Render the files of every folder, by name: header, source, configuration, demo, build file, README and solver.
 
     Args:
         words: of the templates.
@@ -276,7 +276,7 @@ def rendered(
 def title_words(
     names: Names, scene: Scene, generated: Mapping[str, str], without_workspace: Collection[str] = ()
 ) -> dict[str, Any]:
-    """Names, title and versions of a folder, and the memory that its kernels need."""
+    """Words for names, title and versions of a folder, and for the memory that its kernels need."""
     major, minor, patch = re.findall(r"\d+", version("cosserat-casadi"))[:3]
     return {
         "name": names.name,
@@ -300,11 +300,11 @@ ROWS_OF_UNKNOWNS = {
     "own_of_row": "real *own = x + (size_t)i * N",
     "own_size": "N * sizeof *own",
 }
-"""Words of a batch whose solutions are unknowns."""
+"""Words for batches whose solutions are unknowns."""
 
 
 def batch_words(name: str, order: str) -> dict[str, Any]:
-    """Words on the order in which the function for many load cases solves them, which may be empty."""
+    """Words for the order in which the function of many load cases solves them, which may be empty."""
     if not order:
         return {"batch_workspace": f"{name}_workspace", "batch_note": "", "batches": order}
     note = f"\n   It solves {order}."
@@ -312,7 +312,7 @@ def batch_words(name: str, order: str) -> dict[str, Any]:
 
 
 def _words_of_rows(name: str, rows: InLanes | None) -> dict[str, Any]:
-    """Words of the source of the function for many load cases."""
+    """Words for the source of the function of many load cases."""
     if rows is None:
         return {**ROWS_OF_UNKNOWNS, "batch_solve": "solver_solve", "batch_stack": ""}
     return {
@@ -384,11 +384,11 @@ def _sizes(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str
 
 
 def solver_constants(limits: ContinuationSettings, near: float) -> dict[str, Any]:
-    """Words of the templates on the limits of the solver.
+    """Words of the templates for the limits of the solver.
 
     Args:
-        limits: of a continuation.
-        near: how far two solutions may be apart on one branch.
+        limits: limits of a continuation.
+        near: largest distance of two solutions on one branch.
     """
     return {
         "tolerance": limits.newton.tolerance,
@@ -415,11 +415,11 @@ def solver_constants(limits: ContinuationSettings, near: float) -> dict[str, Any
 
 
 def input_words(model: Model | TubeFunctions, names: Names, ranges: str = RANGES_OF_RODS) -> dict[str, Any]:
-    """Words of the templates on the inputs of a model: macros, struct, ranges, table, default values.
+    """Words of the templates for the inputs of a model: macros, struct, ranges, table, default values.
 
     Args:
-        model: with the inputs.
-        names: of the library.
+        model: model with the inputs.
+        names: names of the library.
         ranges: sentence on the ranges of each kind of input, and on the solver beyond them.
     """
     entries = input_entries(model)
@@ -445,7 +445,7 @@ def input_words(model: Model | TubeFunctions, names: Names, ranges: str = RANGES
 
 
 def _ends(values: FloatArray, names: Names) -> str:
-    """Ends of ranges as an initialiser of an array."""
+    """Bounds as the initialiser of an array in C."""
     real = f"({names.name}_real)"
     infinite = {np.inf: f"{real}HUGE_VAL", -np.inf: f"-{real}HUGE_VAL"}
     return ", ".join(infinite.get(value) or initialiser(value, names) for value in values.tolist())
@@ -462,18 +462,18 @@ def _unknown_words(model: Model) -> dict[str, str]:
 
 
 def _file_rows(name: str, files: Collection[str]) -> str:
-    """Purpose of each file of a folder, as rows of the README."""
+    """Rows of the README with the purpose of each file of a folder."""
     roles = {file.format(name=name): role for file, role in ROLES.items()}
     return "\n".join(f"| `{file}` | {role} |" for file, role in roles.items() if file in files)
 
 
 def accuracy_words(scene: Scene, error_estimate: float | None, verified: Verified | None) -> dict[str, str]:
-    """Words of a README, and of the comment at the top of a header, on the error that the discretisation leaves.
+    """Words of a README, and of the comment at the top of a header, for the error of the discretisation.
 
     Args:
         scene: the exported scene.
-        error_estimate: of the tip's pose at the scene's inputs, relative to the length; None where it is not known.
-        verified: over which ranges the discretisation keeps the tolerance; None where that is not known.
+        error_estimate: error of the tip pose at the scene's inputs, over the length; None if unknown.
+        verified: ranges over which the discretisation keeps the tolerance; None if unknown.
     """
     note = _accuracy_note(scene, error_estimate, verified)
     return {"accuracy_note": note, "accuracy_comment": _wrapped(comment(note))}
@@ -494,12 +494,12 @@ def _accuracy_note(scene: Scene, error_estimate: float | None, verified: Verifie
 
 
 def _wrapped(text: str) -> str:
-    """A paragraph of the comment at the top of a header."""
+    """Break a paragraph into lines of the comment at the top of a header."""
     return textwrap.fill(text, COMMENT_WIDTH, initial_indent="   ", subsequent_indent="   ", break_long_words=False)
 
 
 def comment(text: str) -> str:
-    """A title that cannot end the comment it stands in, splice its line, or change the direction of what follows."""
+    """Make a title safe in a comment: it cannot end the comment, splice its line, or change the text direction."""
     printable = "".join(character if character.isprintable() else " " for character in text)
     harmless = printable.replace("\\", "/").replace("??/", "?? /").replace("*/", "* /").replace("/*", "/ *")
     return " ".join(harmless.split())

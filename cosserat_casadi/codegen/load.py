@@ -1,4 +1,4 @@
-"""An exported folder of any kind, compiled and loaded: its manifest says which kind it is."""
+"""Compilation and loading of an exported folder of any kind, which its manifest names."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.numerics.progress import StageProgress
 
 SCENE = "scene.toml"
-"""File of an exported folder: the scene that it was made from."""
+"""File of an exported folder with its scene."""
 
 ALWAYS = ("", "_kernels")
-"""Ends of the names of the sources that every folder has."""
+"""Suffixes of the stems of sources that every folder has."""
 
 ASKED_FOR = ("_derivatives", "_stability", "_lanes")
-"""Ends of the names of the sources that a folder has where they were asked for."""
+"""Suffixes of the stems of sources that a folder has on request."""
 
 Loaded = Compiled | CompiledContact
 """An exported folder of rods, of rods in exact contact, or of concentric tubes."""
@@ -42,14 +42,14 @@ def load(
 ) -> Loaded:
     """Compile an exported folder, once, and load it.
 
-    The shared object lies in the user's cache folder under a name that holds a hash of sources, compiler and flags:
-    the same sources are compiled once, wherever they lie, and an object that some process has loaded is never written
-    over. The environment variable ``COSSERAT_CASADI_CACHE`` names another folder, or with ``off`` none.
+    The name of the shared object in the user's cache folder contains a hash of sources, compiler and flags: equal
+    sources are compiled once, wherever they are, and an object that some process has loaded is never overwritten. The
+    environment variable ``COSSERAT_CASADI_CACHE`` names another folder, or disables the cache with ``off``.
 
     Args:
         directory: a folder written by :func:`cosserat_casadi.export`.
         compiler: C compiler; by default the command in the environment variable CC, then cc, gcc, clang, python-zig.
-        progress: told the file that is compiled, the number of compiled files, and of all; not called if none is left.
+        progress: callback with the file under compilation, the numbers of compiled files and of all, while any is left.
 
     Returns:
         The library of rods, of rods in exact contact, or of concentric tubes, as the manifest says.
@@ -84,7 +84,7 @@ def _kind(described: Any) -> type[Compiled] | type[CompiledContact]:
 
 
 def _scene_text(folder: Path) -> str:
-    """Text of the scene of an exported folder; empty where somebody has taken it away."""
+    """Read the text of the scene of an exported folder; empty if the file was removed."""
     try:
         return (folder / SCENE).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError):

@@ -30,13 +30,13 @@ from cosserat_casadi.maths.typing import FloatArray
 class LoadedLibrary(ABC):
     """An exported folder, compiled.
 
-    Methods take inputs by name, where inputs left out keep the scene's values, or all inputs stacked. They raise a
-    ValueError for inputs of the wrong size, and a SceneError for names that the scene does not have.
+    Methods take inputs by name, with the scene's values for the others, or all inputs stacked. They raise a ValueError
+    for inputs of the wrong size, and a SceneError for names that the scene does not have.
 
     Attributes:
         library: the shared object.
-        manifest: what the folder says of itself.
-        scene: text of the scene that the folder was exported from; empty where that file is missing.
+        manifest: contents of the folder, as data.
+        scene: text of the exported scene; empty if that file is missing.
     """
 
     library: Path
@@ -46,24 +46,24 @@ class LoadedLibrary(ABC):
     @staticmethod
     @abstractmethod
     def is_sound(described: Any) -> bool:
-        """Whether a manifest has what a folder of this kind needs beside name, files and inputs.
+        """Whether a manifest has the entries of this kind of folder, besides name, files and inputs.
 
         Raises:
-            AttributeError, KeyError, OverflowError, TypeError, ValueError: it has not.
+            AttributeError, KeyError, OverflowError, TypeError, ValueError: an entry is missing or wrong.
         """
 
     @staticmethod
     def sizes(described: Mapping[str, Any]) -> dict[str, int]:
-        """Sizes beside the size of the inputs, by their macros in the header, as a sound manifest has them."""
+        """Sizes in a sound manifest, except that of the inputs, by their macros in the header."""
         parameters = described.get("parameters")
         return {"PARAMETERS": sum(len(entry["value"]) for entry in parameters)} if parameters else {}
 
     def __getstate__(self) -> dict[str, Any]:
-        """State for pickle and copy: where the shared object lies, not the object that this process opened."""
+        """Return the state for pickle and copy: the path of the shared object in place of the opened object."""
         return {entry.name: getattr(self, entry.name) for entry in fields(self)}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        """Raises an ExportError where the shared object is not on this machine, or was removed."""
+        """Restore the state; raise an ExportError if the shared object is not on this machine, or was removed."""
         if not state["library"].is_file():
             problem = "is not here: a pickle of a loaded folder names its shared object and does not hold it"
             raise ExportError(Problem(str(state["library"]), problem, "load the folder again"))
@@ -86,22 +86,22 @@ class LoadedLibrary(ABC):
 
     @property
     def tolerance(self) -> float | None:
-        """Wanted error of the scene; None where no tolerance has a meaning."""
+        """Wanted error of the scene; None if no tolerance has a meaning."""
         if not self.manifest["tolerance_binds"]:
             return None
         return float(self.manifest["tolerance"])
 
     def in_range(self, inputs: ArgumentValues = None) -> bool:
-        """Whether every input is in its range, which its kind and the bounds of the scene set."""
+        """Whether every input is in its range, by its kind and the bounds of the scene."""
         given = self.inputs.stacked(inputs)
         return bool(np.all((given >= self.inputs.lower) & (given <= self.inputs.upper)))
 
     def clamp(self, inputs: ArgumentValues = None) -> FloatArray:
-        """All inputs, stacked; values beyond a range move to its end, and NaN stays."""
+        """Stack all inputs, with values beyond a range moved to its end; NaN stays."""
         return np.clip(self.inputs.stacked(inputs), self.inputs.lower, self.inputs.upper)
 
     def _rows(self, inputs: npt.ArrayLike, parameters: ArgumentValues) -> tuple[FloatArray, list[Any]]:
-        """Inputs of many load cases, shape (count, size of the inputs), and what C takes behind them.
+        """Return the inputs of many load cases, shape (count, size of the inputs), and the further arguments of C.
 
         Args:
             inputs: shape (count, size of the inputs), or one row for all.
@@ -122,14 +122,14 @@ class LoadedLibrary(ABC):
         return given, [pointer(p)] if self.parameters.size else []
 
     def _given(self, inputs: ArgumentValues, parameters: ArgumentValues) -> list[Any]:
-        """Inputs and parameters as functions in C take them."""
+        """Convert inputs and parameters to arguments of functions in C."""
         return [pointer(self.inputs.stacked(inputs)), *self.parameters.passed(parameters)]
 
     def _judged(self, *arguments: Any) -> CompiledStability | None:
-        """Stability of an equilibrium; None where the arguments are of no equilibrium.
+        """Judge the stability of an equilibrium; None if the arguments are no equilibrium.
 
         Args:
-            arguments: of the function in C, before its workspaces.
+            arguments: arguments of the function in C, before its workspaces.
         """
         info = StabilityInfo()
         memory = room(self._function("stability_workspace_size")())
@@ -141,21 +141,21 @@ class LoadedLibrary(ABC):
         return ctypes.CDLL(str(self.library))
 
     def _function(self, word: str) -> Any:
-        """A function in C: its symbol begins with the name of the library."""
+        """Look up a function in C, whose symbol begins with the name of the library."""
         return getattr(self._handle, f"{self.manifest['name']}_{word}")
 
     def _workspace(self) -> Any:
-        """Memory for one call, so that several threads may call at once."""
+        """Allocate memory for one call, so that several threads may call at once."""
         return room(self._function("workspace_size")())
 
 
 def budget(options: type[ctypes.Structure], first: int | None, second: int | None) -> Any:
-    """A reference to the struct of the two budgets of a turn; None where the header's are to hold.
+    """Make a reference to the struct of the two budgets of a turn; None for the budgets of the header.
 
     Args:
         options: the struct, whose members are the budgets.
-        first: value of the first budget; None for none.
-        second: value of the second budget; None for none.
+        first: value of the first budget; None for the header's.
+        second: value of the second budget; None for the header's.
 
     Raises:
         ValueError: one budget is given without the other.
@@ -169,15 +169,15 @@ def budget(options: type[ctypes.Structure], first: int | None, second: int | Non
 
 
 def by_tip(names: Sequence[str], columns: FloatArray) -> dict[str, FloatArray]:
-    """The d(position, quaternion)/dinputs of each tip, shape (7, m).
+    """Return d(position, quaternion)/dinputs of each tip, shape (7, m).
 
     Args:
-        names: of the rods, or of the tubes.
-        columns: what the library wrote, shape (tips, m, 7).
+        names: names of the rods, or of the tubes.
+        columns: array that the library wrote, shape (tips, m, 7).
     """
     return {name: own.T for name, own in zip(names, columns, strict=True)}
 
 
 def room(size: int) -> Any:
-    """Zeroed memory of so many bytes, aligned for numbers."""
+    """Allocate zeroed memory of so many bytes, aligned for numbers."""
     return (ctypes.c_double * -(-size // ctypes.sizeof(ctypes.c_double)))()

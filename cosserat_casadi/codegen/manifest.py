@@ -1,4 +1,4 @@
-"""Contents of an exported folder, as data: functions, shapes, units, discretisation, sizes."""
+"""Manifest of an exported folder: its functions, shapes, units, discretisation and sizes, as data."""
 
 from __future__ import annotations
 
@@ -32,23 +32,23 @@ from cosserat_casadi.tubes.tube_functions import TubeFunctions
 MANIFEST = "manifest.json"
 
 ARRANGEMENTS = "arrangements"
-"""Key of the arrangements of contacts, which a folder of a scene in exact contact has alone."""
+"""Key of the arrangements of contacts, which only a folder of a scene in exact contact has."""
 
 TUBES = "tubes"
-"""Key of the names of the tubes, which a folder of concentric tubes has alone."""
+"""Key of the names of the tubes, which only a folder of concentric tubes has."""
 
 SCHEMA = 1
-"""Version of the manifest that is written, and read back."""
+"""Version of the manifest that is written, and that can be read."""
 
 EXPORT_FIRST = "write one with cosserat export"
-"""Remedy where there is no manifest."""
+"""Remedy for a missing manifest."""
 
 
 def read_manifest(folder: Path) -> Any:
-    """The manifest of a folder, not checked yet.
+    """Read the manifest of a folder, without checks.
 
     Raises:
-        ExportError: it cannot be read, or is not JSON.
+        ExportError: the manifest cannot be read, or is not JSON.
     """
     try:
         return json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
@@ -59,11 +59,11 @@ def read_manifest(folder: Path) -> Any:
 
 
 def is_sound(described: Any, is_own: Callable[[Any], bool]) -> bool:
-    """Whether a manifest has name of the library, files, values of inputs, and the entries of its kind.
+    """Whether a manifest has the name of the library, files, values of inputs, and the entries of its kind.
 
     Args:
         described: the manifest.
-        is_own: whether the entries of this kind are there; it may raise any error of reading wrong data.
+        is_own: check of the entries of its kind; it may raise any error of reading wrong data.
     """
     try:
         library_names(described["name"])
@@ -76,17 +76,17 @@ def is_sound(described: Any, is_own: Callable[[Any], bool]) -> bool:
 
 
 def check_folder(folder: Path, described: Mapping[str, Any], sizes: Mapping[str, int]) -> None:
-    """Refuse a folder of another version, or one whose header has other sizes than its manifest, as of mixed exports.
+    """Refuse a folder of another version, or whose header and manifest have different sizes, as in mixed exports.
 
     A library compiled with the sizes of the header would write beyond arrays that have the sizes of the manifest.
 
     Args:
         folder: the exported folder.
         described: its manifest, sound.
-        sizes: by macro, without the name of the library, what the manifest says.
+        sizes: sizes in the manifest, by macro without the name of the library.
 
     Raises:
-        ExportError: the schema is not the one that is read, or with every size that differs.
+        ExportError: the schema is another one, or sizes differ; the error lists all of them.
     """
     schema = described.get("schema")
     if schema != SCHEMA:
@@ -112,7 +112,7 @@ def check_folder(folder: Path, described: Mapping[str, Any], sizes: Mapping[str,
 
 
 def input_count(described: Mapping[str, Any]) -> int:
-    """Numbers in the vector of inputs of a manifest."""
+    """Number of entries of the vector of inputs in a manifest."""
     return sum(len(entry["value"]) for entry in described["inputs"])
 
 
@@ -123,14 +123,14 @@ def manifest(
     error_estimate: float | None,
     verified: Verified | None = None,
 ) -> dict[str, Any]:
-    """The manifest as plain data.
+    """Make the manifest as plain data.
 
     Args:
         model: the exported model.
-        names: what things are called.
+        names: names of the library and its parts.
         kernels: the generated kernels.
-        error_estimate: of the tip's pose at the scene's inputs, relative to the length; None where it is not known.
-        verified: over which ranges the discretisation keeps the tolerance; None where that is not known.
+        error_estimate: error of the tip pose at the scene's inputs, over the length; None if unknown.
+        verified: ranges over which the discretisation keeps the tolerance; None if unknown.
     """
     known = {entry.kernel: entry for entry in functions_in_c(model, names)}
     return {
@@ -144,7 +144,7 @@ def manifest(
 
 
 def head_entries(names: Names, model: Model | TubeFunctions) -> dict[str, Any]:
-    """Name, title and versions, with which every manifest begins, inputs and parameters."""
+    """First entries of every manifest: name, title, versions, inputs and parameters."""
     return {
         "schema": SCHEMA,
         "name": names.name,
@@ -156,13 +156,13 @@ def head_entries(names: Names, model: Model | TubeFunctions) -> dict[str, Any]:
 
 
 def with_manifest(files: Mapping[str, str], described: Mapping[str, Any]) -> dict[str, str]:
-    """Files of a folder, the manifest last, which lists all."""
+    """Add the manifest, which lists all files, to the files of a folder."""
     entries = {**described, "files": sorted([*files, MANIFEST])}
     return {**files, MANIFEST: json.dumps(entries, indent=1, ensure_ascii=False) + "\n"}
 
 
 def accuracy_entries(scene: Scene, error_estimate: float | None, verified: Verified | None) -> dict[str, Any]:
-    """The tolerance of a scene, and the error that its discretisation leaves; arguments as for :func:`manifest`."""
+    """Entries for the tolerance of a scene and the error of its discretisation; arguments as for :func:`manifest`."""
     return {
         "tolerance": scene.accuracy.tolerance,
         "tolerance_binds": scene.accuracy.binds,
@@ -172,7 +172,7 @@ def accuracy_entries(scene: Scene, error_estimate: float | None, verified: Verif
 
 
 def input_entries(model: Model | TubeFunctions) -> list[dict[str, Any]]:
-    """Inputs in the order of their vector."""
+    """Entries for the inputs in the order of their vector."""
     lower, upper = ranges_of_inputs(model.scene, model.inputs)
     return [
         _stacked_entry(entry, indices, axes=entry.axes, lower=_ends(lower[indices]), upper=_ends(upper[indices]))
@@ -181,17 +181,17 @@ def input_entries(model: Model | TubeFunctions) -> list[dict[str, Any]]:
 
 
 def _ends(values: FloatArray) -> list[float | None]:
-    """Ends of ranges; None for an open end, for JSON knows no infinity."""
+    """Bounds of ranges, with None for infinity, which JSON does not have."""
     return [value if np.isfinite(value) else None for value in values.tolist()]
 
 
 def parameter_entries(model: Model | TubeFunctions) -> list[dict[str, Any]]:
-    """Parameters in the order of their vector."""
+    """Entries for the parameters in the order of their vector."""
     return [_stacked_entry(entry, indices) for entry, indices in model.parameters]
 
 
 def _stacked_entry(entry: Input | NamedNumbers, indices: slice, **further: Any) -> dict[str, Any]:
-    """Where an input or a parameter is in its vector, and its value in the scene."""
+    """Entry of an input or a parameter: its indices in the vector, and its value in the scene."""
     return {
         "name": entry.name,
         "unit": entry.unit,
@@ -203,7 +203,7 @@ def _stacked_entry(entry: Input | NamedNumbers, indices: slice, **further: Any) 
 
 
 def actuator_entries(model: Model) -> list[dict[str, Any]]:
-    """Actuators in the order of the scene, with their efforts and the coordinates that these work on."""
+    """Entries for the actuators in the order of the scene, with their efforts and conjugates."""
     entries = []
     for actuator in model.scene.actuators:
         effort, conjugate = (model.actuator[actuator.name].name_out(i) for i in range(2))
@@ -213,7 +213,7 @@ def actuator_entries(model: Model) -> list[dict[str, Any]]:
 
 
 def _output_entries(model: Model) -> dict[str, Any]:
-    """Actuators, bodies and the order of the sensitivities, of scenes that have such."""
+    """Entries for actuators, bodies and the order of sensitivities, if a scene has these."""
     described: dict[str, Any] = {}
     if model.scene.actuators:
         described["actuators"] = actuator_entries(model)
@@ -227,7 +227,7 @@ def _output_entries(model: Model) -> dict[str, Any]:
 
 
 def described_unknowns(model: Model) -> list[tuple[dict[str, Any], str]]:
-    """Unknowns in the order of their vector, strains, multipliers, frames, tensions, flows; each in words too."""
+    """Entries for the unknowns in the order of their vector, strains to flows, each with its description."""
     described: list[tuple[dict[str, Any], str]] = []
     discrete = model.discrete
 
@@ -279,7 +279,7 @@ def described_unknowns(model: Model) -> list[tuple[dict[str, Any], str]]:
 
 
 def _function_entry(kernel: Kernel, every: Mapping[str, FunctionInC]) -> dict[str, Any]:
-    """A kernel, with the function of the header that it is behind; of parts of an assembly none is known."""
+    """Entry of a kernel, with the function of the header that calls it, if it is not a part of an assembly."""
     function = kernel.signature if isinstance(kernel, PrintedKernel) else kernel
     known = every.get(function.name())
     units = ARGUMENT_UNITS if known is None else known.units
@@ -295,7 +295,7 @@ def _function_entry(kernel: Kernel, every: Mapping[str, FunctionInC]) -> dict[st
 
 
 def _public_entry(known: FunctionInC | None) -> dict[str, str]:
-    """The entries by which ``load`` offers a kernel; none where the solver alone calls it."""
+    """Entries by which ``load`` offers a kernel; empty if only the solver calls it."""
     if known is None or not known.spec.public:
         return {}
     described = {"function": known.spec.name}

@@ -1,4 +1,4 @@
-"""Memory of the library in C: a workspace that the caller gives, and stack."""
+"""Memory of the library in C: a workspace that the caller provides, and stack."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 REAL, INTEGER = 8, 4
-"""Bytes of a number in double precision, of an int."""
+"""Bytes of a number in double precision, and of an int."""
 
 FRAMES = 1800
-"""Bytes of stack for all functions that are no kernels, from the public one down."""
+"""Bytes of stack of all functions other than kernels, from the public one down."""
 
 
 DEFINED = re.compile(r"MADE\((\w+)\)|(\w+)\(")
-"""The name of a function where it begins; functions that compute four numbers at a time have several names."""
+"""Pattern of the name at the definition of a function; functions for four numbers at a time have several names."""
 
 
 def largest_room(generated: Mapping[str, str], kind: str) -> int:
-    """The most that any kernel asks its caller for: of numbers ("W"), of integers ("IW").
+    """Largest work memory that a kernel needs from its caller: numbers ("W"), or integers ("IW").
 
     Args:
         generated: source and header of the kernels by file name.
@@ -28,21 +28,21 @@ def largest_room(generated: Mapping[str, str], kind: str) -> int:
 
 
 def _rooms(generated: Mapping[str, str], kind: str) -> dict[str, int]:
-    """Numbers that each kernel asks its caller for."""
+    """Work memory that each kernel needs from its caller."""
     header = "".join(text for file, text in generated.items() if file.endswith(".h"))
     return {name: int(size) for name, size in re.findall(rf"(\w+)_SZ_{kind} (\d+)", header)}
 
 
 def stack_bytes(generated: Mapping[str, str], without_workspace: Collection[str] = ()) -> int:
-    """Stack that a call needs, in double precision: as much as the kernel which needs most.
+    """Stack of a call in double precision, bytes: the need of the kernel with the largest one.
 
-    A kernel in straight-line code keeps its values in local variables, which all lie on the stack where nothing is
-    optimised, with variables of the functions that it calls, one below the other. A kernel that is called without a
-    workspace has its room there as well; all other kernels work in the room of the workspace.
+    A kernel of straight-line code keeps its values in local variables. Without optimisation all of them are on the
+    stack, above the variables of the functions that it calls. The work memory of a kernel that is called without a
+    workspace is there as well; other kernels use the workspace.
 
     Args:
         generated: source and header of the kernels by file name.
-        without_workspace: names of the kernels that are called without one.
+        without_workspace: names of the kernels that are called without a workspace.
     """
     rooms = _rooms(generated, "W")
     deepest = _on_calls(generated)
@@ -54,7 +54,7 @@ def stack_bytes(generated: Mapping[str, str], without_workspace: Collection[str]
 
 
 def _on_calls(generated: Mapping[str, str]) -> dict[str, int]:
-    """Numbers on the stack of each function of the kernels, with the numbers of its deepest call."""
+    """Count of numbers on the stack for each function of the kernels, including its deepest call."""
     included = [text for file, text in generated.items() if file.endswith("_in_fours.h")]
     sources = [text for file, text in generated.items() if file.endswith(".c")]
     text = "".join([*included, *sources])
@@ -76,7 +76,7 @@ def _on_calls(generated: Mapping[str, str]) -> dict[str, int]:
 
 
 def _locals(function: str) -> int:
-    """Numbers in the local variables of a function; a variable that is four numbers counts as such."""
+    """Count of numbers in the local variables of a function; a vector of four counts as four."""
     single = re.findall(r"^ +casadi_real (a\d.*);$", function, flags=re.M)
     fours = re.findall(r"^ +FOUR (b\d.*);$", function, flags=re.M)
     return _variables(single) + 4 * _variables(fours)

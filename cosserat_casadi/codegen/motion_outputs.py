@@ -1,6 +1,6 @@
 """Outputs of a scene in motion: poses, velocities, efforts, as one vector with exact derivatives.
 
-Simulators that couple models, and environments for learning, see these quantities and not the unknowns of the rods.
+Co-simulation and learning environments use these quantities in place of the unknowns of the rods.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ QUATERNION = ("w", "x", "y", "z")
 
 @dataclass(frozen=True)
 class MotionOutput:
-    """One number that is seen of a motion.
+    """One scalar output of a motion.
 
     Attributes:
-        name: dotted, such as ``arm.tip.position.x``.
-        unit: SI unit, "1" where there is none.
+        name: dotted name, such as ``arm.tip.position.x``.
+        unit: SI unit, "1" if dimensionless.
         description: one sentence.
     """
 
@@ -37,11 +37,11 @@ class MotionOutputs:
     """The outputs of a model in motion.
 
     Attributes:
-        entries: what each entry of the vector is.
-        function: (x, v, inputs, inputs_rate) ↦ outputs, shape (k,); of a scene with parameters (x, v, inputs, p,
-            inputs_rate).
-        jacobian: the same arguments ↦ derivatives with (x, v) side by side, k×2n, with inputs, with p where there are
-            parameters, and with inputs_rate.
+        entries: description of each entry of the vector.
+        function: (x, v, inputs, inputs_rate) ↦ outputs, shape (k,); for a scene with parameters (x, v, inputs, p,
+            inputs_rate) ↦ outputs.
+        jacobian: these arguments ↦ derivatives by (x, v) side by side, k×2n, by inputs, by p if there are parameters,
+            and by inputs_rate.
     """
 
     entries: tuple[MotionOutput, ...]
@@ -50,7 +50,7 @@ class MotionOutputs:
 
 
 def motion_outputs(model: Model) -> MotionOutputs:
-    """Poses and velocities of tips and bodies, then efforts of actuators and joints and their coordinates.
+    """Make the outputs: poses and velocities of tips and bodies, then efforts and conjugates of actuators and joints.
 
     Args:
         model: a model that was built with its motion.
@@ -89,7 +89,7 @@ def motion_outputs(model: Model) -> MotionOutputs:
 
 
 def _jacobian(stacked: Matrix, arguments: list[ca.MX], names: list[str]) -> ca.Function:
-    """Derivatives with (x, v), and with each of the other arguments."""
+    """Make the derivatives by (x, v), and by each of the other arguments."""
     x, v, *others = arguments
     by_state = ca.horzcat(ca.jacobian(stacked, x), ca.jacobian(stacked, v))
     results = [by_state, *(ca.jacobian(stacked, other) for other in others)]

@@ -1,4 +1,4 @@
-"""The equations of motion of a scene as parts of rods, and the blocks in which the matrices of a step are eliminated.
+"""The equations of motion of a scene in parts of rods, and the blocks in which the matrices of a step are eliminated.
 
 A scene with one dense Jacobian is one part and one block. State (x, v, a) and inputs (with rates and accelerations) are
 one vector each, so that parts are cut as parts of statics are.
@@ -39,11 +39,11 @@ class MotionInC:
     """Parts of the step in C.
 
     Attributes:
-        blocks: of stiffness, damping and mass together.
+        blocks: blocks of stiffness, damping and mass together.
         order: the blocks in which the linear systems of a step are eliminated.
         residual: the equations in parts.
-        matrices: entries of stiffness, damping and mass in parts: one after the other, in the order of the pattern.
-        input_matrices: derivatives by inputs, their rates, their accelerations, in parts: by index in the dense matrix.
+        matrices: entries of stiffness, then damping, then mass in parts, in the order of the pattern.
+        input_matrices: derivatives by inputs, their rates, their accelerations, in parts, by index in the dense matrix.
     """
 
     blocks: Blocks
@@ -54,13 +54,13 @@ class MotionInC:
 
     @property
     def kernels(self) -> list[Kernel]:
-        """All functions, those without loops with the calls of their intervals in fours."""
+        """All functions; those without loops compute four intervals at a time."""
         functions = [*self.residual.kernels, *self.matrices.kernels, *self.input_matrices.kernels]
         return [with_calls_in_fours(function) for function in functions]
 
 
 def motion_in_c(model: Model, names: Names) -> MotionInC:
-    """The equations of motion of a model in parts."""
+    """Make the equations of motion of a model in parts."""
     state, inputs, factor, arguments = _symbols(model)
     plain = model.inverse_dynamics.call(arguments)[0], model.dynamics_jacobian.call(arguments)[: len(MATRICES)]
     equations, matrices = _stops_apart(model, arguments[0], *plain)
@@ -87,9 +87,9 @@ def motion_in_c(model: Model, names: Names) -> MotionInC:
 
 
 def _flows_apart(discrete: DiscreteScene) -> list[int]:
-    """Number of each unknown's block: flows of one strain in one branch, which meet in its stiffness alone.
+    """Index of each unknown's block: flows of one strain in one branch are coupled by its stiffness alone.
 
-    Their rows are diagonal: eliminated first, they leave linear systems of the other unknowns, which are the interface.
+    The rows of flows are diagonal and are eliminated first; the other unknowns are the interface.
     """
     owners = np.full(discrete.size, INTERFACE)
     number = 0
@@ -103,7 +103,7 @@ def _flows_apart(discrete: DiscreteScene) -> list[int]:
 
 
 def check_motion(model: Model, *, on_device: bool = False) -> None:
-    """Refuse a scene that has no motion in C, or none beside batches on a GPU.
+    """Refuse a scene whose motion is not supported in C, or not together with batches on a GPU.
 
     Raises:
         ExportError: with every fault.
@@ -118,10 +118,10 @@ def check_motion(model: Model, *, on_device: bool = False) -> None:
 
 
 def _stops_apart(model: Model, x: ca.MX, residual: ca.MX, matrices: Sequence[Any] = ()) -> tuple[ca.MX, Sequence[Any]]:
-    """The equations, and their derivatives by x, v and a, without the pairs of rigid stops.
+    """Remove the pairs of rigid stops from the equations and their derivatives by x, v and a.
 
-    Rigid stops push in steps as obstacles do, so that balances along coordinates of joints are without their pushes.
-    The row of a pair says that its push is what such a balance holds. Without rigid stops all is returned as it is.
+    In steps, rigid stops push like obstacles, so that the balances along the coordinates of joints exclude their
+    pushes. The row of a pair equates its push to the residual of that balance. Without rigid stops nothing changes.
     """
     stops = stop_facings(model)
     if not stops:
@@ -143,9 +143,9 @@ def _stops_apart(model: Model, x: ca.MX, residual: ca.MX, matrices: Sequence[Any
 
 
 def _symbols(model: Model) -> tuple[ca.MX, ca.MX, ca.MX, list[ca.MX]]:
-    """State, inputs and a factor that nothing depends on; and the arguments of the model's functions in motion.
+    """Symbols of the state, the inputs and an unused factor; and the arguments of the model's functions in motion.
 
-    Parameters are behind the inputs; so they have places behind rates and accelerations too, which nothing reads.
+    Parameters are appended to the inputs; the corresponding entries after rates and accelerations are unused.
     """
     size, count, given = model.size, model.inputs.size, given_size(model)
     state = ca.MX.sym("state", 3 * size)
@@ -158,7 +158,7 @@ def _symbols(model: Model) -> tuple[ca.MX, ca.MX, ca.MX, list[ca.MX]]:
 
 
 def _matrices(partition: Blocks, symbols: Sequence[ca.MX], matrices: Sequence[ca.MX], name: str) -> Parted:
-    """Entries of stiffness, damping and mass; entries of one owner stand together."""
+    """Make the entries of stiffness, damping and mass in parts; entries of one owner are together."""
     number = {entry: k for k, entry in enumerate(zip(*partition.pattern.get_triplet(), strict=True))}
     owner_of = partition.entry_parts
     places = list[int]()
@@ -173,7 +173,7 @@ def _matrices(partition: Blocks, symbols: Sequence[ca.MX], matrices: Sequence[ca
 
 
 def _input_matrices(model: Model, partition: Blocks, name: str) -> Parted:
-    """Derivatives by inputs, their rates and their accelerations, each with room behind it for those by parameters."""
+    """Make the derivatives by inputs, rates and accelerations, each followed by columns for those by parameters."""
     state, inputs, factor, arguments = _symbols(model)
     # In the function's own symbols CasADi sees through the call, and writes a quarter of the derivatives.
     given = model.inverse_dynamics.mx_in()

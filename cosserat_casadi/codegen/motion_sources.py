@@ -1,4 +1,4 @@
-"""The words of the sources that belong to motions: tables, sizes and limits of the step in C."""
+"""Words in the templates of motions: tables, sizes and limits of the step in C."""
 
 from __future__ import annotations
 
@@ -70,8 +70,8 @@ def motion_entry(model: Model) -> dict[str, Any]:
     """Entry of the manifest on motions.
 
     Returns:
-        the method and its tolerance, which unknowns are coordinates with rates and accelerations, and the energies, J,
-        that entries of the residual are multiplied by.
+        the method and its tolerance, the unknowns with rates and accelerations, and the energies, J, by which entries
+        of the residual are multiplied.
     """
     unknowns = model.discrete.unknowns
     return {
@@ -85,7 +85,7 @@ def motion_entry(model: Model) -> dict[str, Any]:
 
 
 def _workspace_reals(model: Model, motion: MotionInC, words: Words) -> int:
-    """Numbers that the workspace has for motions."""
+    """Size of the workspace for motions, in numbers."""
     size, room = model.size, words["input_room"]
     entries = words["stage_entries"] * (2 * len(MATRICES) + 4) + words["most_motion_entries"]
     matrices = 4 * words["stage_matrix"] + 4 * size**2 + 12 * size * room
@@ -103,7 +103,7 @@ def _entry_tables(motion: MotionInC) -> str:
 
 
 def _acceleration_table(model: Model) -> str:
-    """Table that says of each input, then of each parameter, whether the equations of motion have its acceleration."""
+    """Write the table of inputs, then parameters, whose accelerations enter the equations of motion."""
     function = model.inverse_dynamics
     felt = np.zeros(max(model.inputs.size + model.parameters.size, 1), dtype=int)
     felt[function.jac_sparsity(0, function.index_in("inputs_acceleration")).get_col()] = 1
@@ -111,14 +111,14 @@ def _acceleration_table(model: Model) -> str:
 
 
 def _elimination_tables(fronts: Elimination, whole: Elimination) -> str:
-    """Tables of both orders of elimination; a scene with one front has one order alone."""
+    """Write the tables of both orders of elimination; a scene with one front has only one order."""
     if len(fronts.fronts) == 1:
         return _elimination("WHOLE", ["BY_FRONTS", "AS_A_WHOLE"], whole)
     return _elimination("FRONT", ["BY_FRONTS"], fronts) + _elimination("WHOLE", ["AS_A_WHOLE"], whole)
 
 
 def _elimination(stem: str, names: Sequence[str], order: Elimination) -> str:
-    """The tables of an order, and records of these names."""
+    """Write the tables of an order of elimination, and records with these names."""
     of_fronts, listed = front_tables(order.fronts, f"{stem}_")
     lines = [of_fronts]
     of_entries = {"FRONTS": order.entry_fronts, "ROWS": order.entry_rows, "COLUMNS": order.entry_columns}

@@ -1,11 +1,11 @@
-"""A stage of an optimal-control problem in motion, compiled, with the derivatives that its solver asks for.
+"""A compiled stage of an optimal-control problem in motion, with the derivatives that its solver needs.
 
-As in :mod:`stage` whole Jacobians are functions in C. The equations' Jacobians are made of the derivatives of inverse
-dynamics at every instant, K with x, C with v, M with a: with the tables A, A² and the nodes c of the method
+As in :mod:`stage`, whole Jacobians are functions in C. The Jacobians of the equations consist of the derivatives of
+inverse dynamics at every instant, K by x, C by v, M by a: with the tables A, A² and the nodes c of the method
 
     ∂R_i/∂x₀ = K, ∂R_i/∂(h v₀) = c_i K + C/h, ∂R_i/∂(h² a_j) = (A²)_ij K + A_ij C/h + δ_ij M/h²,
 
-and of an algebraic entry ∂R_i/∂z_j = δ_ij K. Poses are a separate function: their second derivatives then do not
+and ∂R_i/∂z_j = δ_ij K for an algebraic entry. Poses are a separate function, so that their second derivatives do not
 evaluate the equations of motion.
 """
 
@@ -40,10 +40,10 @@ from cosserat_casadi.numerics.progress import StageProgress
 
 @dataclass(frozen=True)
 class CompiledMotionStage:
-    """Functions of a stage in motion that a solver evaluates, in C.
+    """Functions in C of a stage in motion, for a solver.
 
     Attributes:
-        equations: as :attr:`MotionStage.equations`.
+        equations: equations of the stage, as in :attr:`MotionStage.equations`.
         poses: (state, inputs), with parameters (state, inputs, p), ↦ for every rod and body ``tip_…`` or ``body_…``,
             shape (7,): position, m, and quaternion w x y z.
     """
@@ -60,15 +60,15 @@ def compiled_motion_stage(
     compiler: str | None = None,
     progress: StageProgress | None = None,
 ) -> CompiledMotionStage:
-    """The equations of a stage in motion and its poses, compiled once, with compiled derivatives.
+    """Compile the equations of a stage in motion and its poses, with their derivatives.
 
     Args:
         stage: the stage.
-        name: what the functions begin with, a C identifier.
-        curvature: as in :func:`compiled_stage`: whether second derivatives are exact. They have several hundred times
-            as many instructions as the equations of motion: for models of a few unknowns.
+        name: prefix of the functions, a C identifier.
+        curvature: whether second derivatives are exact, as in :func:`compiled_stage`. They have several hundred times
+            as many instructions as the equations of motion, and are for models of a few unknowns.
         compiler: C compiler; by default the command in the environment variable CC, then cc, gcc, clang, python-zig.
-        progress: as in :func:`compiled_stage`.
+        progress: callback, as in :func:`compiled_stage`.
 
     Raises:
         ExportError: the name is no C identifier, there is no compiler, or it fails.
@@ -88,12 +88,12 @@ def compiled_motion_stage(
 
 
 def equations_functions(stage: MotionStage, name: str, curvature: bool) -> Iterator[ca.Function]:
-    """The equations, their Jacobian, their adjoint and its Jacobian, named as ``casadi.external`` looks for them.
+    """Make the equations, their Jacobian, their adjoint and its Jacobian, named for ``casadi.external``.
 
     Args:
         stage: the stage.
-        name: what the equations are called.
-        curvature: whether the last one is exact.
+        name: name of the equations.
+        curvature: whether the Jacobian of the adjoint is exact.
     """
     inverse_dynamics = written(stage.dynamics.inverse_dynamics, f"{name}_at_instant")
     plain = stage.equations_by(inverse_dynamics, name)
@@ -107,7 +107,7 @@ def equations_functions(stage: MotionStage, name: str, curvature: bool) -> Itera
 
 
 def poses_functions(stage: MotionStage, name: str, curvature: bool) -> Iterator[ca.Function]:
-    """The poses of tips and bodies, their Jacobian, their adjoint and its Jacobian, as :func:`equations_functions`."""
+    """Make the poses of tips and bodies, with their derivatives as in :func:`equations_functions`."""
     model = stage.model
     state, _, inputs, *_ = stage.symbols
     given = [inputs]
@@ -138,7 +138,7 @@ def poses_functions(stage: MotionStage, name: str, curvature: bool) -> Iterator[
 
 
 def _equations_jacobian(stage: MotionStage, plain: ca.Function) -> ca.Function:
-    """∂ residual / ∂ (state, unknowns, inputs, p, rates) from K, C and M at every instant."""
+    """Make ∂ residual / ∂ (state, unknowns, inputs, p, rates) from K, C and M at every instant."""
     method = stage.method
     tangents = _tangents(stage, f"{plain.name()}_tangents")
     input_slopes = _input_slopes(stage, f"{plain.name()}_input_slopes")
@@ -190,7 +190,7 @@ def _input_slopes(stage: MotionStage, name: str) -> ca.Function:
 
 
 def _by_inputs(stage: MotionStage, arguments: Sequence[Matrix], name: str) -> ca.Function:
-    """The derivatives with inputs, parameters and the rates of inputs in given symbols."""
+    """Make the derivatives by inputs, parameters and the rates of inputs in given symbols."""
     plain = stage.dynamics.inverse_dynamics
     residual = plain(*arguments, ca.DM(stage.model.inputs.size, 1))
     words = plain.name_in()[:-1]
@@ -200,7 +200,7 @@ def _by_inputs(stage: MotionStage, arguments: Sequence[Matrix], name: str) -> ca
 
 
 def _columns(stage: MotionStage, differential: float, algebraic: float, stiffness: Matrix) -> Matrix:
-    """The stiffness with its columns of differential and of algebraic entries multiplied by a number each."""
+    """Scale the columns of differential, and of algebraic, entries of the stiffness by one number each."""
     if np.all(stage.accelerated):
         return float(differential) * stiffness
     weights: FloatArray = np.where(stage.accelerated, differential, algebraic)

@@ -1,4 +1,4 @@
-"""The name that every exported symbol begins with."""
+"""Names of exported symbols, and checks of the name of a library, their prefix."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.faults import shown
 
 LONGEST = 48
-"""Characters of the longest name: C99 promises to tell apart 31 of an external symbol, compilers take far more."""
+"""Characters of the longest name: C99 guarantees 31 significant ones of a symbol, compilers take far more."""
 
 _C = """auto break case char const continue default do double else enum extern float for goto if inline int long
 register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while"""
@@ -30,20 +30,20 @@ stddef stdint stdio stdlib string tgmath threads time"""
 _BUILD = "all c clean edit_cache help install m package rebuild_cache test"
 
 KEYWORDS = frozenset(_C.split()) | frozenset(_CPP.split())
-"""Words of C and C++, and of linked libraries, that are no names for a library."""
+"""Words of C and C++, and of linked libraries, that a library cannot have as its name."""
 
 TAKEN = frozenset(_HEADERS.split()) | frozenset(_BUILD.split())
-"""Headers of C, which the library's own would hide, and what CMake and the linker know by a name."""
+"""Names of C headers, which the library's header would hide, and names known to CMake and the linker."""
 
 FILES = frozenset(file.split(".")[0] for file in files_in_c())
-"""Files of the solver, which the library's own would overwrite."""
+"""Stems of the files of the solver, which files of a library with that name would overwrite."""
 
 FUNCTIONS = tuple(table(ModelFunctions))
 """The named functions of every model."""
 
 QUERIES = """SZ_ARG SZ_IW SZ_RES SZ_W checkout decref default_in incref n_in n_out name_in name_out release sparsity_in
 sparsity_out work work_bytes"""
-"""Endings that CasADi appends to the name of a function."""
+"""Suffixes that CasADi appends to the name of a function."""
 
 TABLES = {Owner.ROD: "rods", Owner.ACTUATOR: "actuators", Owner.BODY: "bodies", Owner.JOINT: "joints"}
 """Tables of a scene whose names become part of symbols."""
@@ -71,11 +71,11 @@ class Names:
 
     @property
     def macro(self) -> str:
-        """Beginning of macros and enumerators."""
+        """Prefix of macros and enumerators."""
         return self.name.upper()
 
     def function(self, word: str, owner: str | None = None) -> str:
-        """Symbol of a function of a rod, an actuator or a body; a rod is named only where there are several."""
+        """Symbol of a function of a rod, an actuator or a body; a rod is named only if there are several."""
         return self._symbol(word, word, owner)
 
     def kernel(self, word: str, owner: str | None = None) -> str:
@@ -87,7 +87,7 @@ class Names:
         return self._symbol(f"f_{word}", word, owner)
 
     def words(self, kind: Owner) -> list[str]:
-        """The words in the symbols of the functions in C that there is one of for each owner of a kind."""
+        """Words in the symbols of the functions in C that exist once for each owner of a kind."""
         return [spec.name_in_c for spec in self.functions if spec.kernel and spec.owner is kind]
 
     def _symbol(self, shown: str, word: str, owner: str | None) -> str:
@@ -98,13 +98,13 @@ class Names:
 
 
 def model_names(name: str, model: Model, *, dynamics: bool = False, estimate_errors: bool = False) -> Names:
-    """Names of the exported library of a model, with the functions of its class.
+    """Make the names of the exported library of a model, with the functions of its class.
 
     Args:
         name: the library.
         model: the exported model.
-        dynamics: whether functions of motion are among them.
-        estimate_errors: whether the functions that estimate errors of answers are among them.
+        dynamics: whether functions of motion are included.
+        estimate_errors: whether functions that estimate errors of answers are included.
 
     Raises:
         ExportError: as :func:`library_names`.
@@ -118,7 +118,7 @@ def model_names(name: str, model: Model, *, dynamics: bool = False, estimate_err
 
 
 def scene_names(name: str, scene: Scene, functions: tuple[FunctionSpec, ...] = FUNCTIONS) -> Names:
-    """Names of the exported library of a scene.
+    """Make the names of the exported library of a scene.
 
     Raises:
         ExportError: as :func:`library_names`.
@@ -148,11 +148,11 @@ def library_names(
     joints: tuple[str, ...] = (),
     functions: tuple[FunctionSpec, ...] = FUNCTIONS,
 ) -> Names:
-    """Names of an exported library.
+    """Make the names of an exported library.
 
     Raises:
-        ExportError: the name is no C identifier that two languages and a linker agree on, or two things in the library
-            would have one name.
+        ExportError: the name is not a C identifier valid for C, C++ and linkers, or two parts of the library would have
+            one name.
     """
     names = Names(name, rods, actuators, bodies, joints, functions)
     problems = [
@@ -194,7 +194,7 @@ def _symbol_problems(names: Names) -> Iterator[Problem]:
 
 
 def _clashes(kind: Owner, owners: Sequence[str], functions: Sequence[list[str]]) -> Iterator[Problem]:
-    """Names of one table that no C symbol can hold, or that give two functions one name."""
+    """Problems of names in one table that cannot be part of a C symbol, or that give two functions one name."""
     entries = TABLES[kind]
     taken = dict[str, str]()
     for i, (owner, own) in enumerate(zip(owners, functions, strict=True)):
@@ -210,7 +210,7 @@ def _clashes(kind: Owner, owners: Sequence[str], functions: Sequence[list[str]])
 
 
 def identifier(name: str) -> str:
-    """Name of an input, of a parameter or of a disk of a row as a C identifier."""
+    """Turn the name of an input, of a parameter or of a disk of a row into a C identifier."""
     return re.sub(r"\W+", "_", name.rstrip("]"))
 
 

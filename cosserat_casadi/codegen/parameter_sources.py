@@ -1,4 +1,4 @@
-"""The words of the sources that belong to parameters: arguments of the header's functions, and what stacks them."""
+"""Words in the templates of parameters: arguments of the header's functions, and code that stacks them."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ DERIVATIVES = {
     "residual_by_parameters": "d_residual_d_parameters",
     "end_by_parameters": "d_end_d_parameters",
 }
-"""Arguments of the header for derivatives with parameters, each behind that for the derivative with inputs."""
+"""Arguments of the header for derivatives by parameters, each of which follows the one for derivatives by inputs."""
 
 ROWS_OF_INPUTS: Words = {"parameters_in_source": "", "given_of_row": "inputs + (size_t)i * INPUTS", "given": "inputs"}
-"""Words of a batch without parameters."""
+"""Words for batches without parameters."""
 
 WITHOUT: Words = {
     **ROWS_OF_INPUTS,
@@ -34,16 +34,16 @@ WITHOUT: Words = {
     "pose_adapters": "",
     "parameter_reals": 0,
 }
-"""Words of a library without parameters, beside the words that depend on the library."""
+"""Words of a library without parameters, besides words that depend on the library."""
 
 
 def parameter_words(basics: Words, model: Model | TubeFunctions, names: Names, *, dynamics: bool) -> Words:
-    """Words of a library, with parameters where the scene names some.
+    """Words of a library, with parameters if the scene names some.
 
     Args:
         basics: names and sizes of the library.
         model: the exported model.
-        names: what things are called.
+        names: names of the library and its parts.
         dynamics: whether the library has motions.
     """
     functions = [names.function("tip_jacobian", rod) for rod in names.rods]
@@ -78,11 +78,11 @@ def parameter_words(basics: Words, model: Model | TubeFunctions, names: Names, *
 
 
 def contact_parameter_words(model: Model, names: Names) -> Words:
-    """Words of a library of rods in exact contact, with parameters where the scene names some.
+    """Words of a library of rods in exact contact, with parameters if the scene names some.
 
     Args:
         model: the exported model.
-        names: what things are called.
+        names: names of the library and its parts.
     """
     if not model.parameters.size:
         empty = ("parameters", "poses_by_parameters", "contacts_by_parameters", "passed", "no_derivatives")
@@ -106,7 +106,7 @@ def _listed_lines(functions: list[str]) -> str:
 
 
 def _arguments(names: Names) -> Words:
-    """Arguments of the functions of the header, each behind another; arguments for inputs end with a comma."""
+    """Arguments of the functions of the header, each following another one; arguments for inputs end with a comma."""
     real = f"{names.name}_real"
     derivatives = {word: f",\n    {real} *{argument}" for word, argument in DERIVATIVES.items()}
     return {
@@ -120,7 +120,7 @@ def _arguments(names: Names) -> Words:
 
 
 def _workspace_reals(basics: Words, dynamics: bool) -> int:
-    """Numbers that the workspace has for parameters."""
+    """Size of the workspace for parameters, in numbers."""
     room = int(basics["input_room"])
     statics = 2 * room + int(basics["unknowns"]) + 7 * int(basics["poses"]) * room
     return statics + (2 * room + 6 * int(basics["unknowns"]) * room if dynamics else 0)

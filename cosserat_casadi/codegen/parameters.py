@@ -1,8 +1,8 @@
-"""Parameters of a scene where functions are written in C: to the solver they are further inputs.
+"""Parameters of a scene in functions in C: for the solver they are further inputs.
 
-The solver in C has one vector for the inputs and, behind them, the parameters. So a path from some parameters to
-others, derivatives of a solution with parameters, and the parts of an assembly are handled as for inputs. Where a scene
-names no parameters the functions here return the model's functions.
+The solver in C has one vector of inputs with appended parameters. So a path from some parameters to others, derivatives
+of a solution by parameters, and the parts of an assembly are handled as for inputs. For a scene without parameters the
+functions here return those of the model.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ def given_size(model: Model | TubeFunctions) -> int:
 
 
 def solver_function(model: Model, spec: FunctionSpec) -> ca.Function:
-    """A function of the solver with inputs and parameters in one argument.
+    """Make a function of the solver with inputs and parameters in one argument.
 
     Args:
-        model: whose function it is.
-        spec: its entry in the table of functions.
+        model: model of the function.
+        spec: entry of the function in the table of functions.
     """
     function = spec.function_in_c(model)
     if not model.parameters.size:
@@ -59,13 +59,13 @@ def input_jacobian(model: Model) -> ca.Function:
 
 
 def parameter_rate(path_residual: ca.Function, name: str) -> ca.Function:
-    """(x, inputs, load_factor, parameters_rate) ↦ what moving parameters add to the rate of the residual at fixed x.
+    """Make (x, inputs, load_factor, parameters_rate) ↦ contribution of parameters to the residual's rate at fixed x.
 
-    A separate function: to inputs alone the residual answers by far fewer instructions.
+    The function is separate, as the rate by inputs alone takes far fewer instructions.
 
     Args:
         path_residual: (x, inputs, p, load_factor) ↦ residual.
-        name: of the function.
+        name: name of the function.
     """
     residual = with_parameters_behind_inputs(path_residual)
     x, inputs, load_factor = residual.mx_in()

@@ -1,8 +1,8 @@
-"""A function of an assembly in parts, one for each rod; rods that compute alike share one function.
+"""A function of an assembly in parts, one for each rod; rods with equal instructions share one function.
 
-Each part reads few unknowns and inputs. Two parts compute alike where their instructions are equal but for
-constants: these become arguments, unless they are equal in all parts. So six legs of a robot are one piece of code.
-Where that is too long without loops, programs.py shares steps in place of instructions.
+Each part reads few unknowns and inputs. Two parts compute alike if their instructions are equal up to constants;
+constants that differ become arguments. So six legs of a robot are one piece of code. If that is too long without
+loops, programs.py shares steps in place of instructions.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ FORESEEN_WITHIN = 4
 
 @dataclass(frozen=True)
 class Part:
-    """Some entries of a function's result.
+    """Some entries of the result of a function.
 
     Attributes:
-        kernel: number of the function that computes them.
-        reads: entries that it reads of each argument, in the order in which it takes them.
-        constants: its constants.
-        entries: numbers of the entries of the whole, in the order of its result.
+        kernel: index of the kernel that computes them.
+        reads: entries that the kernel reads of each argument, in the order in which it takes them.
+        constants: constants that the kernel takes.
+        entries: indices of the entries in the whole, in the order of the kernel's result.
     """
 
     kernel: int
@@ -45,12 +45,12 @@ class Part:
 
     @property
     def x(self) -> list[int]:
-        """Unknowns that it reads, the first argument."""
+        """Indices of the unknowns that the part reads, the first argument."""
         return self.reads[0]
 
     @property
     def inputs(self) -> list[int]:
-        """Inputs that it reads, the second argument of the functions of statics."""
+        """Indices of the inputs that the part reads, the second argument of functions of statics."""
         return self.reads[1]
 
 
@@ -59,8 +59,8 @@ class Parted:
     """A function in parts.
 
     Attributes:
-        kernels: maps (x, inputs, factor, constants) ↦ entries, or of other arguments than the first three.
-        parts: which kernel gives which entries.
+        kernels: maps (x, inputs, factor, constants) ↦ entries, or with other arguments before the constants.
+        parts: parts, each with its kernel and its entries.
     """
 
     kernels: list[Kernel]
@@ -72,12 +72,12 @@ def parted(function: ca.Function, owners: Sequence[int], name: str) -> Parted:
 
     Args:
         function: map (x, inputs, factor) ↦ one matrix.
-        owners: for each entry of the matrix the number of the part that it belongs to.
-        name: what the kernels are called, before their numbers.
+        owners: for each entry of the matrix the number of the part to which it belongs.
+        name: prefix of the names of kernels, before their numbers.
 
     Returns:
-        the parts as straight-line code, which may be longer where some compute alike; where one is too long for that,
-        long ones in loops. A function that is not known as a program is a single part then.
+        the parts as straight-line code, which may be longer if parts compute alike; if one is too long for that, long
+        parts have loops. A function that has no form as a program is then a single part.
     """
     if chooses(function):
         return _whole(function, f"{name}_0")
@@ -102,16 +102,16 @@ def parted(function: ca.Function, owners: Sequence[int], name: str) -> Parted:
 
 
 def in_loops(function: ca.Function, places: Sequence[list[int]], name: str, first: int) -> Parted | None:
-    """Some entries of a function in parts that are in loops where they are long.
+    """Write some entries of a function in parts, of which long ones have loops.
 
     Args:
         function: map (x, inputs, factor) ↦ one matrix.
-        places: numbers of the entries of each part.
-        name: what the kernels are called, before their numbers.
+        places: indices of the entries of each part.
+        name: prefix of the names of kernels, before their numbers.
         first: the first of these numbers.
 
     Returns:
-        the parts; None where the function is not known as a program.
+        the parts; None if the function has no form as a program.
     """
     program = _program(function) if places else None
     if program is None:
@@ -120,7 +120,7 @@ def in_loops(function: ca.Function, places: Sequence[list[int]], name: str, firs
 
 
 def _of_programs(programs: Sequence[PartialProgram], name: str, first: int = 0) -> Parted:
-    """Programs as parts, with a kernel for all that compute alike."""
+    """Turn programs into parts, with one kernel for all programs that compute alike."""
     kernels = list[Kernel]()
     parts = list[Part]()
     for number, group in enumerate(alike(program.key for program in programs), first):
@@ -134,20 +134,20 @@ def _of_programs(programs: Sequence[PartialProgram], name: str, first: int = 0) 
 
 
 def parted_by_rows(function: ca.Function, owners: Sequence[int], name: str) -> Parted:
-    """A matrix in parts as :func:`parted`, by the owners of its rows, with entries by index in the dense matrix."""
+    """Write a matrix in parts, see :func:`parted`, by owners of its rows, with entries by index in the dense matrix."""
     rows, columns = function.sparsity_out(0).get_triplet()
     places = [i + j * function.size1_out(0) for i, j in zip(rows, columns, strict=True)]
     return placed(parted(function, [owners[i] for i in rows], name), places)
 
 
 def placed(whole: Parted, places: Sequence[int]) -> Parted:
-    """Parts whose entries are moved to these places."""
+    """Move the entries of parts to these places."""
     parts = [replace(part, entries=[places[k] for k in part.entries]) for part in whole.parts]
     return replace(whole, parts=parts)
 
 
 def _straight(function: ca.Function, places: Sequence[list[int]], name: str) -> Parted:
-    """Parts as straight-line code."""
+    """Write parts as straight-line code."""
     symbols = function.sx_in()
     entries = function.call(symbols)[0].nonzeros()
     named = names_of_part(ARGUMENTS[:3])
@@ -166,7 +166,7 @@ def _straight(function: ca.Function, places: Sequence[list[int]], name: str) -> 
 
 
 def _program(function: ca.Function) -> Program | None:
-    """The steps of a function; None where it is not known as a program."""
+    """Return the steps of a function; None if it has no form as a program."""
     if function.is_a("SXFunction"):
         return None
     try:
@@ -176,24 +176,24 @@ def _program(function: ca.Function) -> Program | None:
 
 
 def _short_or_in_loops(program: Program) -> ca.Function:
-    """Straight-line code if that is short, else loops."""
+    """Write straight-line code if that is short, else loops."""
     in_loops = function_of(program)
     straight = in_scalars(in_loops, program.name)
     return straight if straight.n_instructions() <= STRAIGHT else in_loops
 
 
 def places_by_owner(owners: Sequence[int]) -> list[list[int]]:
-    """Places where each owner stands, one owner after another."""
+    """List the indices of each owner's entries, owner by owner."""
     return [[i for i, entry_owner in enumerate(owners) if entry_owner == owner] for owner in sorted(set(owners))]
 
 
 def sharing(functions: Sequence[ca.Function], kernels: Sequence[ca.Function], name: str) -> list[ca.Function]:
-    """Kernels, of which all that compute alike call one function.
+    """Rewrite kernels so that all that compute alike call one function.
 
     Args:
-        functions: what the kernels compute, with as many arguments each.
-        kernels: the functions as straight-line code with dense outputs; a function that is like no other keeps it.
-        name: what the functions that they call are called, before their numbers.
+        functions: functions of the kernels, with equal numbers of arguments.
+        kernels: the functions as straight-line code with dense outputs, kept for a function that is like no other.
+        name: prefix of the names of shared functions, before their numbers.
     """
     # Common terms are shared afterwards: those of one rod may be equal by chance.
     streams = [Stream.settled(stacked(function)) for function in functions]
@@ -207,13 +207,13 @@ def sharing(functions: Sequence[ca.Function], kernels: Sequence[ca.Function], na
 
 
 def in_one(function: ca.Function, owners: Sequence[int], name: str, most: float = inf) -> ca.Function | None:
-    """A function with one column as its result, of which entries of owners that compute alike share code.
+    """Rewrite a function with one column as its result so that owners whose entries compute alike share code.
 
     Args:
         function: the function.
-        owners: for each entry of the result whose it is.
-        name: of the new function.
-        most: instructions of entries that share no code up to which it is wanted; None stands for a longer one.
+        owners: owner of each entry of the result.
+        name: name of the new function.
+        most: most instructions of entries that share no code; the result is None for a longer function.
     """
     symbols, (result,) = scalars(function)
     entries = ca.vertsplit(ca.densify(result))
@@ -240,12 +240,12 @@ def in_one(function: ca.Function, owners: Sequence[int], name: str, most: float 
 def _calling(
     function: ca.Function, name: str, shared: ca.Function, reads: Sequence[Sequence[int]], constants: Sequence[float]
 ) -> ca.Function:
-    """A function with dense results as a call of a shared one.
+    """Write a function with dense results as a call of a shared one.
 
     Args:
         function: the function.
-        name: of the new function.
-        shared: maps the entries read of each argument, and constants, to the entries of all results.
+        name: name of the new function.
+        shared: function of the entries read of each argument, and constants ↦ entries of all results.
         reads: entries that are read of each argument.
         constants: constants of this function.
     """
@@ -263,7 +263,7 @@ def _calling(
 
 
 def _whole(function: ca.Function, name: str) -> Parted:
-    """The function as one part, in loops."""
+    """Write the function as one part, with loops."""
     symbols = function.mx_in()
     result = function.call(symbols, function.is_a("MXFunction"), False)[0].nz[:]
     no_constants = ca.MX(0, 1)

@@ -1,4 +1,4 @@
-"""The words of the sources that watch steps for rods that pass through something thin: smooth_passage.py in C."""
+"""Words in the templates of checks for rods that pass through thin obstacles in a step: smooth_passage.py in C."""
 
 from __future__ import annotations
 
@@ -30,17 +30,17 @@ from cosserat_casadi.model.system import Arguments, ratio_of
 from cosserat_casadi.model.thin import first_places, moved_by
 
 PASSAGE_FILES = ("interpolation.c", "passages.c")
-"""Files of the folder ``c`` that a library includes which watches."""
+"""Files of the folder ``c`` of a library with these checks."""
 
 ANY_SHARE = -1.0
-"""Distance in abscissae below the distance of any two sections."""
+"""Distance in abscissae that is less than that of any two sections."""
 
 RADII = 65
-"""Sections whose radii are listed of a rod that is not linear from base to tip."""
+"""Number of sections at which the radius of a rod is listed, if it is not linear from base to tip."""
 
 
 def watches_passages(model: Model) -> bool:
-    """Whether there is something thin in the scene that rods, disks or bodies could pass through."""
+    """Whether the scene has thin obstacles that rods, disks or bodies could pass through."""
     return bool(thin_layers(model.discrete) or model.discrete.pairs)
 
 
@@ -51,7 +51,7 @@ def distance_kernel(obstacle: scenes.ObstacleRecord, name: str) -> ca.Function:
 
 
 def passage_kernels(model: Model, names: Names) -> list[ca.Function]:
-    """The distances from thin obstacles."""
+    """Make the distances from thin obstacles."""
     if not watches_passages(model):
         return []
     distances = [distance_kernel(own, _kernel(names, i)) for i, own in enumerate(_thin(model.at().discrete))]
@@ -65,11 +65,11 @@ def passage_kernels(model: Model, names: Names) -> list[ca.Function]:
 
 
 def passage_words(model: Model, names: Names) -> Words:
-    """Words of a library on the obstacles and rods that it watches.
+    """Words of a library on the obstacles and rods that it checks.
 
     Args:
         model: the exported model.
-        names: of the library.
+        names: names of the library.
     """
     if not watches_passages(model):
         return {"place_reals": 0}
@@ -97,7 +97,7 @@ def passage_words(model: Model, names: Names) -> Words:
 
 
 def _sizes(model: Model, inputs: ca.MX) -> list[Scalar]:
-    """Sizes of all barriers and pairs, as passages.c.in has them; expressions where an argument is part of a size."""
+    """Sizes of all barriers and pairs in passages.c.in, as expressions if they depend on an argument."""
     known_discrete, discrete = model.at().discrete, model.discrete
     sizes: list[Scalar] = []
     for own, layer in zip(thin_layers(known_discrete), thin_layers(discrete), strict=True):
@@ -115,7 +115,7 @@ def _sizes(model: Model, inputs: ca.MX) -> list[Scalar]:
 
 
 def _share_apart(discrete: DiscreteScene, pair: ContactPair, inputs: ca.MX) -> Scalar:
-    """How far the second section of a pair is from the first at least, in abscissae."""
+    """Least distance in abscissae between the two sections of a pair."""
     if not pair.itself:
         return ANY_SHARE
     (name, _) = pair.rods
@@ -140,7 +140,7 @@ def _kernel(names: Names, number: int) -> str:
 
 
 def _barrier_lines(discrete: DiscreteScene, names: Names) -> Iterator[str]:
-    """Tables of rods, disks and bodies that may not pass through an obstacle."""
+    """Write the tables of rods, disks and bodies that may not pass through an obstacle."""
     layers = thin_layers(discrete)
     if not layers:
         return
@@ -170,7 +170,7 @@ def _barrier_lines(discrete: DiscreteScene, names: Names) -> Iterator[str]:
 
 
 def _parts(discrete: DiscreteScene, layer: ContactLayer) -> int:
-    """Number of equal parts of a rod in each of which its radius is linear; one of a ball."""
+    """Number of equal parts of a rod with linear radius; 1 for a ball."""
     if not _is_rod(layer):
         return 1
     places = np.linspace(0.0, 1.0, RADII)
@@ -180,7 +180,7 @@ def _parts(discrete: DiscreteScene, layer: ContactLayer) -> int:
 
 
 def _node_lines(discrete: DiscreteScene, rod: str, number: int) -> Iterator[str]:
-    """The nodes of a rod."""
+    """Write the nodes of a rod."""
     grid = discrete.rods[rod].grid
     yield reals(f"NODE_ENDS_{number}", np.array(grid.breaks))
     yield reals(f"LOCAL_NODES_{number}", chebyshev.nodes(grid.intervals))
@@ -196,7 +196,7 @@ def _node_lines(discrete: DiscreteScene, rod: str, number: int) -> Iterator[str]
 
 
 def _pair_lines(discrete: DiscreteScene) -> Iterator[str]:
-    """The table of rods that push each other."""
+    """Write the table of rods that push each other."""
     if not discrete.pairs:
         return
     _, first = first_places(discrete)

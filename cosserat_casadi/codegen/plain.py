@@ -1,4 +1,4 @@
-"""Functions of a compiled library as CasADi functions that give values alone."""
+"""Functions of a compiled library as CasADi functions without derivatives."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ from cosserat_casadi.maths.typing import FloatArray
 
 EXPORT_WITH = "export the folder with derivatives: export(..., derivatives=True), or cosserat export --derivatives"
 IN_PYTHON = "differentiate the model's own"
-"""Remedies for a derivative that a folder can hold, and for one that it never holds."""
+"""Remedies for a derivative that a folder can contain, and for one that it never contains."""
 
 Shapes = dict[str, tuple[int, int]]
 
 Evaluate = Callable[[Sequence[FloatArray]], Sequence[FloatArray]]
-"""Argument vectors to results."""
+"""Function of argument vectors ↦ results."""
 
 
 class PlainFunction(ca.Callback):  # type: ignore[misc]
-    """A function without derivatives: asked for one, it says what to do.
+    """A function without derivatives, whose error on a derivative names the remedy.
 
     Args:
-        name: of the function.
+        name: name of the function.
         arguments: shape of each argument by name.
         results: shape of each result by name.
-        evaluate: what computes the results.
-        remedy: what to do for its derivatives.
+        evaluate: function that computes the results.
+        remedy: remedy for a missing derivative.
     """
 
     def __init__(self, name: str, arguments: Shapes, results: Shapes, evaluate: Evaluate, remedy: str) -> None:
@@ -66,16 +66,16 @@ class PlainFunction(ca.Callback):  # type: ignore[misc]
         return ca.Sparsity.dense(*list(self._results.values())[i])
 
     def eval(self, arguments: Sequence[ca.DM]) -> list[ca.DM]:
-        """The results."""
+        """Evaluate the results."""
         vectors = [np.ascontiguousarray(argument.full().ravel()) for argument in arguments]
         return [ca.DM(result) for result in self._evaluate(vectors)]
 
     def has_jacobian(self) -> bool:
-        """CasADi asks for the Jacobian here, and is told why there is none."""
+        """Return True, so that CasADi asks for the Jacobian and :meth:`get_jacobian` explains why there is none."""
         return True
 
     def get_jacobian(self, *_: Any) -> ca.Function:
-        """Refuse.
+        """Refuse the Jacobian, with the remedy.
 
         Raises:
             NotImplementedError: always.
@@ -84,15 +84,15 @@ class PlainFunction(ca.Callback):  # type: ignore[misc]
 
 
 def pointer(array: FloatArray) -> Any:
-    """An array as an argument of a function in C."""
+    """Pass an array as an argument of a function in C."""
     return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
 
 
 def vector(value: npt.ArrayLike, size: int, name: str) -> FloatArray:
-    """Numbers as a vector of a known size.
+    """Convert numbers to a vector of a known size.
 
     Raises:
-        ValueError: there are more or fewer; the name says of what.
+        ValueError: there are more or fewer numbers; the error mentions the name.
     """
     numbers = np.ascontiguousarray(value, dtype=np.float64).ravel()
     if len(numbers) != size:

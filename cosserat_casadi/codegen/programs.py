@@ -1,8 +1,8 @@
-"""Programs of some entries of a function's result, and one program for all that compute alike.
+"""Programs of some entries of a function's result, and one shared program for all that compute alike.
 
-Two programs compute alike where their steps (compiling/steps.py) are equal but for constants. Constants that differ
-become an argument, with a piece for each matrix of constants, that the steps read where it lies. So a kernel that
-several rods share may be as long as it likes.
+Two programs compute alike if their steps (compiling/steps.py) are equal up to constants. Constants that differ become
+an argument, with a piece for each matrix of constants, which the steps read in place. So a kernel that several rods
+share may have any length.
 """
 
 from __future__ import annotations
@@ -20,21 +20,21 @@ from cosserat_casadi.compiling.numbered import Argument, Numbers, Origins, Progr
 from cosserat_casadi.compiling.steps import entrywise
 
 CONSTANT = -1
-"""Local number of every constant that is not zero."""
+"""Local number of every nonzero constant."""
 
 
 @dataclass(frozen=True, eq=False)
 class PartialProgram:
-    """The steps of a part, numbered anew: 0 for zero, then entries read of arguments, then results of steps.
+    """The steps of a part with local numbers: 0 for zero, then entries read of arguments, then results of steps.
 
     Attributes:
-        entries: which entries of the result it gives.
+        entries: indices of the entries of the result.
         arguments: names of the arguments.
         reads: entries that are read of each argument.
         steps: the steps.
         constants: for each operand of each step the constants among its entries, in order.
-        outputs: these entries.
-        output_constants: the constants among them.
+        outputs: local numbers of the entries of the result.
+        output_constants: the constants among these entries.
     """
 
     entries: list[int]
@@ -47,13 +47,13 @@ class PartialProgram:
 
     @property
     def key(self) -> tuple[object, ...]:
-        """Key that programs which compute alike share."""
+        """Key of all programs that compute alike."""
         lines = tuple((_identity(step), *(operand.key for operand in step.operands)) for step in self.steps)
         return tuple(map(len, self.reads)), lines, self.outputs.tobytes()
 
 
 def foreseen(steps: Sequence[Step]) -> float:
-    """Instructions without loops, roughly: a call of a long function counts as its arguments and results."""
+    """Estimate the instructions without loops; a call of a long function counts as its arguments and results."""
     total = 0.0
     for step in steps:
         if np.isfinite(step.instructions):
@@ -64,7 +64,7 @@ def foreseen(steps: Sequence[Step]) -> float:
 
 
 def _identity(step: Step) -> object:
-    """Key of a step but for the constants in it: two functions built alike are one."""
+    """Key of a step up to its constants; two functions with equal instructions have one key."""
     if step.operation is not None:
         return step.operation
     if step.function.is_a("SXFunction"):
@@ -74,14 +74,14 @@ def _identity(step: Step) -> object:
 
 @cache
 def _lines(function: ca.Function) -> Stream:
-    """Lines of a function that a step calls, with all entries of its results in one column."""
+    """Stream of a function that a step calls, with all entries of its results in one column."""
     symbols = function.sx_in()
     entries = [entry for result in function.call(symbols) for entry in result.nonzeros()]
     return Stream.settled(ca.Function("stacked", symbols, [ca.vertcat(*entries)], *names_of_part(function.name_in())))
 
 
 def partial_program(program: Program, entries: Sequence[int]) -> PartialProgram:
-    """The part of a program that gives some of the stored entries of its one result."""
+    """Extract the part of a program that computes some of the stored entries of its single result."""
     (result,) = program.results.values()
     # In the order in which they are computed they need not be brought into another.
     ordered = sorted(entries, key=result.numbers.__getitem__)
@@ -118,12 +118,12 @@ def partial_program(program: Program, entries: Sequence[int]) -> PartialProgram:
 
 
 def shared_program(programs: Sequence[PartialProgram], name: str) -> tuple[Program, list[list[float]]]:
-    """One program for programs that compute alike, and the constants of each, which it reads beside its arguments."""
+    """Make one program of programs that compute alike, and list the constants of each, a further argument."""
     return _Sharing(programs, name).result
 
 
 def _needed(program: Program, wanted: Numbers) -> tuple[npt.NDArray[np.bool_], list[Step]]:
-    """Which numbers some numbers need, and the steps that compute these; entrywise steps compute no other entries."""
+    """Find the numbers on which wanted numbers depend, and their steps; entrywise steps compute no other entries."""
     needed = np.zeros(program.origins.count, dtype=np.bool_)
     needed[wanted] = True
     kept = []
@@ -141,9 +141,9 @@ def _needed(program: Program, wanted: Numbers) -> tuple[npt.NDArray[np.bool_], l
 
 
 def _ordered(steps: Sequence[Step], wanted: Numbers, count: int) -> list[Step]:
-    """The steps in the order in which the wanted entries need them: the same order in all parts that compute alike.
+    """Order the steps as the wanted entries need them, which gives one order for all parts that compute alike.
 
-    In the whole program the first part computes the values that it shares with the others before they do.
+    In the whole program, the first part computes the values that it shares before the others do.
     """
     maker = np.full(count, -1, dtype=np.int64)
     for k, step in enumerate(steps):
@@ -163,13 +163,13 @@ def _ordered(steps: Sequence[Step], wanted: Numbers, count: int) -> list[Step]:
 
 
 def _distinct(makers: Numbers) -> list[int]:
-    """The steps that made entries, in the order of the entries."""
+    """List the steps that compute entries, in the order of the entries."""
     found, first = np.unique(makers, return_index=True)
     return [int(k) for k in found[np.argsort(first)] if k >= 0]
 
 
 def _of_entries(step: Step, chosen: Numbers) -> Step:
-    """A step that is done entry by entry, of some entries alone."""
+    """Restrict a step that is done entry by entry to some entries."""
     assert step.operation is not None
     operands = []
     for operand in step.operands:
@@ -181,13 +181,13 @@ def _of_entries(step: Step, chosen: Numbers) -> Step:
 
 
 def _constants(origins: Origins, numbers: Numbers) -> tuple[float, ...]:
-    """The constants among entries but for zeros."""
+    """List the constants among entries, except zeros."""
     constant = origins.is_constant(numbers) & (numbers != 0)
     return tuple(origins.constants(numbers[constant]))
 
 
 class _Sharing:
-    """Programs that compute alike on their way to one.
+    """Merger of programs that compute alike into one.
 
     Constants that are equal in all programs stay in the code; all other constants are an argument.
     """
@@ -223,7 +223,7 @@ class _Sharing:
         self.result = (whole, listed)
 
     def _given(self, numbers: Numbers, values: Sequence[tuple[float, ...]]) -> Numbers:
-        """New numbers of the constants of an operand, whose values in all programs these are."""
+        """Number the constants of an operand anew, given their values in all programs."""
         if not values[0]:
             return np.zeros(0, dtype=np.int64)
         constant = numbers == CONSTANT
@@ -236,14 +236,14 @@ class _Sharing:
         return self._piece(values).numbers
 
     def _piece(self, values: Sequence[tuple[float, ...]]) -> Value:
-        """A piece of the constants with these values in the programs."""
+        """Add a piece of constants with these values in the programs."""
         key = tuple(values)
         if key not in self._pieces:
             self._pieces[key] = self._origins.add(ca.Sparsity.dense(len(key[0])))
         return self._pieces[key]
 
     def _function(self, steps: Sequence[Step], name: str) -> tuple[ca.Function, list[Value]]:
-        """The function that a step calls in all programs, and an operand of constants in it that differ."""
+        """Return the function that a step calls in all programs, and an operand for constants in it that differ."""
         functions = [step.function for step in steps]
         first = functions[0]
         if len({function.__hash__() for function in functions}) == 1 or steps[0].operation is not None:
@@ -258,7 +258,7 @@ class _Sharing:
         return _with_constants(first, lines[0].reads, kernel), [constants]
 
     def _numbers(self, numbers: Numbers, constants: Numbers) -> Numbers:
-        """Numbers of entries in this program."""
+        """Translate numbers of entries to this program."""
         if len(constants) == len(numbers):
             return constants
         shifted = np.where(numbers >= self._begin, numbers + self._shift, numbers)
@@ -266,7 +266,7 @@ class _Sharing:
         return shifted
 
     def _step(self, step: Step, constants: Sequence[Numbers], of_function: Sequence[Value]) -> Step:
-        """A step of this program with the new numbers of constants, and further operands of constants."""
+        """Make a step of this program with the new numbers of constants, and further operands of constants."""
         operands = []
         for operand, given in zip(step.operands, constants, strict=True):
             operands.append(Value(operand.pattern, self._numbers(operand.numbers, given)))
@@ -275,12 +275,12 @@ class _Sharing:
 
 
 def _with_constants(function: ca.Function, reads: Sequence[Sequence[int]], kernel: ca.Function) -> ca.Function:
-    """A function of scalars with its constants as one more argument.
+    """Make a function of scalars with its constants as one more argument.
 
     Args:
         function: the function.
         reads: entries that are read of each argument.
-        kernel: maps the entries read of each argument, and the constants, to the entries of all results.
+        kernel: function of the entries read of each argument, and the constants ↦ entries of all results.
     """
     symbols = function.sx_in()
     constants = ca.SX.sym("constants", kernel.size1_in(function.n_in()))
@@ -295,7 +295,7 @@ def _with_constants(function: ca.Function, reads: Sequence[Sequence[int]], kerne
 
 
 def _spread(values: Sequence[float], constant: npt.NDArray[np.bool_]) -> tuple[float, ...]:
-    """Constants with zeros where there is none."""
+    """Spread constants over their entries, with zeros elsewhere."""
     spread = np.zeros(len(constant))
     spread[constant] = values
     return tuple(spread.tolist())

@@ -1,4 +1,4 @@
-"""A model as C that answers rows of inputs with rows of results: what a sweep computes with."""
+"""C library of a model that maps rows of inputs to rows of results, for sweeps."""
 
 from __future__ import annotations
 
@@ -29,29 +29,29 @@ from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.scene import Scene
 
 NAME = "sweep"
-"""Beginning of every symbol of the libraries that solve rows."""
+"""Prefix of every symbol of the libraries that solve rows."""
 
 JUDGED = ("outcome", "iterations", "residual")
 """First columns of every row of results; the outcome as its number."""
 
 ERRORS = ("error_estimate", "within_tolerance")
-"""Columns behind poses, efforts and contacts, where they are asked for: the estimated error, 1 where it is not known;
-whether the tolerance is kept, which rows leave open (NaN)."""
+"""Optional columns after poses, efforts and contacts: the estimated error, 1 if unknown; and whether it is within the
+tolerance, NaN where that is undecided."""
 
 STABILITY = ("smallest_eigenvalue", "stable")
-"""Last columns of a row of results, where they are asked for: in units of EI/ℓ; 1 where it is stable, else 0."""
+"""Optional last columns of a row of results: eigenvalue in units of EI/ℓ; 1 if stable, else 0."""
 
 ENERGY = "energy"
 """Column of the energy of concentric tubes, J."""
 
 TUBE_STABILITY = ("falling_directions", "determinant", "stable")
-"""Last columns of a row of concentric tubes, where they are asked for."""
+"""Optional last columns of a row of concentric tubes."""
 
 CONTACT = ("contacts", "from", "to", "force.x", "force.y", "force.z")
-"""Columns of a rod and an obstacle: number of contacts, abscissae between which they lie, their resultant (N)."""
+"""Columns of a rod and an obstacle: number of contacts, least and largest abscissa, resultant force (N)."""
 
 BODY_CONTACT = ("contacts", "force.x", "force.y", "force.z")
-"""Columns of a body and an obstacle: 1 where they touch, else 0, and the force (N)."""
+"""Columns of a body and an obstacle: 1 if they touch, else 0, and the force (N)."""
 
 POSE = ("x", "y", "z", "qw", "qx", "qy", "qz")
 """Columns of a pose: position (m), quaternion."""
@@ -65,9 +65,9 @@ class RowLibrary:
 
     Attributes:
         files: content by file name, as pairs.
-        inputs: numbers in a row of inputs.
-        parameters: numbers in a row of parameters.
-        results: numbers in a row of results.
+        inputs: number of entries in a row of inputs.
+        parameters: number of entries in a row of parameters.
+        results: number of entries in a row of results.
         in_lanes: whether rows are solved side by side.
     """
 
@@ -78,12 +78,12 @@ class RowLibrary:
     in_lanes: bool = False
 
     def solve(self, rows: FloatArray) -> FloatArray:
-        """Rows of results, shape (count, results), for rows of inputs with parameters behind them.
+        """Solve rows of inputs with appended parameters; return rows of results, shape (count, results).
 
-        Other threads run meanwhile. A row depends on its inputs alone, in exact contact on the rows before it too.
+        Other threads run meanwhile. A row depends on its inputs alone; in exact contact also on the rows before it.
 
         Args:
-            rows: inputs with parameters behind them, shape (count, inputs + parameters).
+            rows: inputs with appended parameters, shape (count, inputs + parameters).
 
         Raises:
             ExportError: there is no C compiler, or it fails.
@@ -100,7 +100,7 @@ class RowLibrary:
         return results
 
     def compiled(self) -> ctypes.CDLL:
-        """The library, which is compiled once.
+        """Return the library, which is compiled once.
 
         Raises:
             ExportError: there is no C compiler, or it fails.
@@ -115,17 +115,17 @@ def row_library(
     stability: bool = False,
     lanes: bool = False,
 ) -> RowLibrary:
-    """Sources of the solver of a model with a function for rows.
+    """Write the sources of the solver of a model with a function for rows.
 
     Args:
         model: the solved model.
         estimate_errors: whether rows have :data:`ERRORS`.
-        stability: whether rows end with :data:`STABILITY`, which means something where the loads have a potential.
-        lanes: whether to solve rows side by side where the equations have a form for that, which takes compilers
-            about twice as long. The results do not change.
+        stability: whether rows end with :data:`STABILITY`, which has a meaning for loads with a potential.
+        lanes: whether to solve rows side by side if the equations have a form for that, which takes about twice as
+            long to compile. The results do not change.
 
     Raises:
-        ExportError: two things of the scene would have one name in C.
+        ExportError: two parts of the scene would have one name in C.
     """
     columns = row_results(model.scene, estimate_errors=estimate_errors, stability=stability)
     made_from = (row_library.__name__, model, estimate_errors, stability, lanes)
@@ -135,7 +135,7 @@ def row_library(
 
 
 def _row_texts(model: Model, columns: tuple[str, ...], *, stability: bool, lanes: bool) -> dict[str, str]:
-    """Sources and headers of the solver of a model with a function for rows."""
+    """Write the sources and headers of the solver of a model with a function for rows."""
     names = model_names(NAME, model, estimate_errors=ERRORS[0] in columns)
     parts = assembled(model, names)
     generated = kernel_sources(kernels(model, names, parts), names)
@@ -150,18 +150,18 @@ def _row_texts(model: Model, columns: tuple[str, ...], *, stability: bool, lanes
 
 
 def to_compile(files: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
-    """The sources and headers of a library, without its demo programs."""
+    """Select the sources and headers of a library, without its demo programs."""
     wanted = [name for name in files if name.endswith((".c", ".h")) and not name.endswith("_demo.c")]
     return tuple((name, files[name]) for name in wanted)
 
 
 def row_results(scene: Scene, *, estimate_errors: bool = False, stability: bool = False) -> tuple[str, ...]:
-    """Names of the columns of a row of results: how it ended, poses of tips and bodies, efforts, exact contacts.
+    """Names of the columns of a row of results: outcome, poses of tips and bodies, efforts, exact contacts.
 
     Args:
         scene: the solved scene.
         estimate_errors: whether :data:`ERRORS` follow.
-        stability: whether they end with :data:`STABILITY`, or :data:`TUBE_STABILITY`.
+        stability: whether the columns end with :data:`STABILITY`, or :data:`TUBE_STABILITY`.
     """
     tips = [*[rod.name for rod in scene.rods], *[tube.name for tube in scene.tubes]]
     posed = [*tips, *[body.name for body in scene.bodies]]
@@ -181,7 +181,7 @@ def row_results(scene: Scene, *, estimate_errors: bool = False, stability: bool 
 
 
 def _rows_source(model: Model, columns: tuple[str, ...], *, lanes: bool) -> str:
-    """The function for rows."""
+    """Write the source of the function for rows."""
     words = {
         "name": NAME,
         "MACRO": NAME.upper(),
@@ -195,7 +195,7 @@ def _rows_source(model: Model, columns: tuple[str, ...], *, lanes: bool) -> str:
 
 
 def judged_words(columns: tuple[str, ...]) -> dict[str, Any]:
-    """Words for the columns of errors and of stability, which a row may have."""
+    """Words for the optional columns of errors and of stability."""
     tells_errors, tells_stability = ERRORS[0] in columns, STABILITY[0] in columns
     return {
         "estimates_errors": tells_errors,
@@ -206,10 +206,10 @@ def judged_words(columns: tuple[str, ...]) -> dict[str, Any]:
 
 
 def loaded(name: str, files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
-    """A library that is compiled once in this process.
+    """Compile and load a library, once in this process.
 
     Args:
-        name: what the name of the object begins with.
+        name: prefix of the name of the shared object.
         files: sources and headers by name.
 
     Raises:

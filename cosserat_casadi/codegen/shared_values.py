@@ -1,8 +1,8 @@
-"""Values that several functions of scalars compute alike from the same arguments, in kernels that they call.
+"""Kernels for values that several functions of scalars compute from common arguments.
 
-Residual, tip and sections of a rod begin with the same kinematics. Each value is known by the set of functions that
-need it. The values of one set are a kernel, if they are many, which returns the values that are read outside of it. It
-reads the values of kernels that more functions share.
+Residual, tip and sections of a rod begin with common kinematics. Each value has the set of functions that need it. If
+the values of one set are many, they form a kernel, which returns the values that are read outside of it, and reads the
+values of kernels that more functions share.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from cosserat_casadi.compiling.scalars_in_c import ColumnedFunction, columns_in_
 from cosserat_casadi.maths.calls import with_shared_terms
 
 FEWEST_SHARED = 100
-"""Number of shared values from which on they become a kernel; of fewer a call saves little code."""
+"""Least number of shared values that form a kernel; for fewer, a call saves little code."""
 
 
 def with_shared_kernels(written: Sequence[ca.Function | ColumnedFunction], name: str) -> list[PrintedKernel]:
-    """Functions in C, which call kernels of the values that they share.
+    """Write functions in C that call kernels for the values that they share.
 
     Args:
-        written: functions of scalars, with dense results, and with the same first argument. Further arguments of one
-            name are the same up to the first whose names differ.
-        name: of the kernels, before their numbers.
+        written: functions of scalars with dense results and a common first argument. Further arguments of equal names
+            are also common, up to the first whose names differ.
+        name: prefix of the names of kernels, before their numbers.
 
     Raises:
         UnknownOperationError: there is an operation that has no form here.
@@ -46,11 +46,11 @@ def with_shared_kernels(written: Sequence[ca.Function | ColumnedFunction], name:
 
 
 def _arguments_of(function: ca.Function, known: dict[tuple[str, ...], ca.SX]) -> list[ca.SX]:
-    """Symbols of the arguments of a function: symbols of another function as long as both have the same names.
+    """Symbols of the arguments of a function, shared with other functions as long as the names are equal.
 
     Args:
         function: the function.
-        known: symbols of other functions by the names of the arguments up to theirs; new ones are added.
+        known: symbols of other functions, by the names of all arguments up to each; new ones are added.
     """
     # The first one is the same, whatever it is called.
     names = ["x", *function.name_in()[1:]]
@@ -61,9 +61,9 @@ def _arguments_of(function: ca.Function, known: dict[tuple[str, ...], ca.SX]) ->
 
 
 class _Sharing:
-    """Functions on their way to kernels that they share.
+    """Extractor of the kernels that functions share.
 
-    Sets of functions are whole numbers with a bit for each function.
+    Sets of functions are integers with a bit for each function.
     """
 
     def __init__(self, functions: Sequence[ca.Function], name: str) -> None:
@@ -83,14 +83,14 @@ class _Sharing:
         self._printed: dict[int, PrintedKernel] = {}
 
     def functions_and_kernels(self) -> tuple[list[ca.Function], dict[int, PrintedKernel]]:
-        """The functions, which call the kernels, and these in C by the hash of their functions."""
+        """Return the functions, which call the kernels, and the kernels in C by the hash of their functions."""
         for home in sorted(self._handed_over, key=lambda home: (-home.bit_count(), home)):
             self._add_kernel(home)
         kernels = {hash(kernel): self._printed[home] for home, kernel in self._kernels.items()}
         return [self._function(i) for i in range(len(self._functions))], kernels
 
     def _homes_of_values(self) -> list[int]:
-        """The set of functions whose kernel computes each value; 0 if each function computes it itself."""
+        """Set of functions whose kernel computes each value; 0 if each function computes the value itself."""
         listing = self._listing
         users = [0] * len(listing.values)
         for i, output in enumerate(listing.outputs):
@@ -115,7 +115,7 @@ class _Sharing:
         return [home if counts[home] >= FEWEST_SHARED else 0 for home in homes]
 
     def _read_elsewhere(self) -> dict[int, list[int]]:
-        """Numbers of the values that each kernel hands over, by its set of functions."""
+        """Numbers of the values that each kernel returns, by its set of functions."""
         handed_over: dict[int, set[int]] = defaultdict(set)
         for number, home in enumerate(self._homes):
             for operand in self._listing.operands(number):
@@ -143,7 +143,7 @@ class _Sharing:
         self._kernels[home] = kernel
 
     def _common(self, home: int) -> list[ca.SX]:
-        """The arguments that all functions of a set begin with: its kernel reads them in their places."""
+        """Arguments with which all functions of a set begin; the kernel of the set takes them in place."""
         first, *others = [arguments for i, arguments in enumerate(self._arguments) if home >> i & 1]
         common = list[ca.SX]()
         for places in zip(first, *others, strict=False):
@@ -153,11 +153,11 @@ class _Sharing:
         return common
 
     def _larger(self, users: int) -> list[int]:
-        """The kernels of sets that hold this one, in the order in which they are called."""
+        """The kernels of larger sets that contain this one, in the order of their calls."""
         return [home for home in self._kernels if home & users == users != home]
 
     def _function(self, i: int) -> ca.Function:
-        """The i-th function, which calls its kernels."""
+        """Make the i-th function, which calls its kernels."""
         function = self._functions[i]
         results: dict[int, ca.SX] = {}
         for home, kernel in self._kernels.items():
@@ -174,11 +174,11 @@ class _Sharing:
         return ca.Function(function.name(), self._arguments[i], shaped, function.name_in(), function.name_out())
 
     def _expressions(self, wanted: Iterable[int], known: Mapping[int, Sequence[ca.SX]]) -> dict[int, ca.SX]:
-        """Expressions of values, and of the values that they are computed from, by number.
+        """Expressions of values, and of the values on which they depend, by number.
 
         Args:
             wanted: numbers of the values.
-            known: for each kernel that is called the entries of its result, by its set of functions.
+            known: entries of the result of each called kernel, by its set of functions.
         """
         expressions = dict(self._read)
         for home, entries in known.items():

@@ -1,4 +1,4 @@
-"""Stability of equilibria in C: sources beside a library, which a folder holds only where they are asked for."""
+"""Stability of equilibria in C: further sources of a library, which a folder contains only on request."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ AT_TIMES = (
 
 
 def stability_files(name: str) -> tuple[str, str, str]:
-    """Names of the sources of the stability of a library: source, header, and the file that the source includes."""
+    """File names for the stability of a library: source, header, and the file that the source includes."""
     return f"{name}_stability.c", f"{name}_stability.h", SECOND_VARIATION
 
 
@@ -32,7 +32,7 @@ def check_stability(model: Model) -> None:
     """Refuse the stability of a scene whose loads have no potential.
 
     Raises:
-        ExportError: an eigenvalue would say nothing at the scene's own inputs.
+        ExportError: eigenvalues have no meaning at the scene's own inputs.
     """
     if not model.has_potential(model.pack()):
         remedy = "leave it out; cosserat modes judges such equilibria by their motion"
@@ -40,11 +40,11 @@ def check_stability(model: Model) -> None:
 
 
 def stability_sources(model: Model, names: Names) -> dict[str, str]:
-    """Sources and header of the stability of equilibria by file name.
+    """Write source and header of the stability of equilibria, by file name.
 
     Args:
         model: the exported model.
-        names: of the library that they stand beside.
+        names: names of the library to which they belong.
     """
     allowed = variations(model)
     units = allowed.units
@@ -73,13 +73,13 @@ def stability_sources(model: Model, names: Names) -> dict[str, str]:
 
 
 def limits_of_stability(model: Model) -> dict[str, Any]:
-    """Words of templates for the limits of a verdict, and for the inputs at which it has a meaning."""
+    """Words of the templates for the limits of a verdict, and for the inputs at which it has a meaning."""
     everywhere = model.has_potential(np.ones(model.inputs.size))
     return {"zero": ZERO, "dependent": DEPENDENT, "aside": ASIDE, "potential_note": ALWAYS if everywhere else AT_TIMES}
 
 
 def _parameter_words(model: Model, names: Names) -> dict[str, str]:
-    """The argument of parameters where there are some, as in the library's own header and source."""
+    """Words for the argument of parameters, if there are some, as in the library's header and source."""
     if not model.parameters.size:
         return dict.fromkeys(("parameters", "passed", "member", "given", "units_note"), "")
     argument = f"const {names.name}_real *parameters"

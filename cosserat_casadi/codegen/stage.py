@@ -1,11 +1,11 @@
-"""Functions of one stage of an optimal-control problem, compiled, with the derivatives that its solver asks for.
+"""Compiled functions of one stage of an optimal-control problem, with the derivatives that its solver needs.
 
-An optimiser needs whole Jacobians. A library that knows only directional derivatives gives them a column at a time;
-here the Jacobian is one function in C, and so is the second derivative. CasADi finds them by their names.
+An optimiser needs whole Jacobians. A library with directional derivatives alone returns them a column at a time; here
+the Jacobian is one function in C, and so is the second derivative. CasADi finds them by their names.
 
 The second derivative of Σ λ_i g_i is symmetric and has many columns, which differ in one direction alone. Its code
-computes one column, the derivative of the adjoint in a direction, in a loop over the columns; what a constant
-derivative leaves empty is not computed, and of two blocks that mirror each other one is.
+computes one column, the derivative of the adjoint in a direction, in a loop over the columns; empty columns are not
+computed, and of two blocks that are transposes of each other only one is.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.numerics.progress import StageProgress
 
 PARTS = 4
-"""Functions of a stage: its value, its Jacobian, its adjoint and the Jacobian of that."""
+"""Number of functions of a stage: value, Jacobian, adjoint, and Jacobian of the adjoint."""
 
 
 def compiled_stage(
@@ -44,28 +44,28 @@ def compiled_stage(
     compiler: str | None = None,
     progress: StageProgress | None = None,
 ) -> ca.Function:
-    """(x, inputs) ↦ (residual, pose of every tip and body, …), compiled once, with compiled derivatives.
+    """Compile (x, inputs) ↦ (residual, pose of every tip and body, …), once, with compiled derivatives.
 
-    Of a scene with parameters (x, inputs, p): fix them with ``model.at(…)`` where they are none of the problem's.
+    For a scene with parameters the arguments are (x, inputs, p); ``model.at(…)`` fixes them if the problem has none.
 
     Args:
-        model: the model; of a scene in exact contact the one which :func:`relaxed_contact` makes of it, whose poses are
-            poses of tips and bodies.
-        name: what the function is called, a C identifier.
+        model: the model; for a scene in exact contact the one that :func:`relaxed_contact` makes of it, whose poses are
+            those of tips and bodies.
+        name: name of the function, a C identifier.
         curvature: whether second derivatives are exact. If not, all second derivatives count as zero, so that any of
-            CasADi's solvers sees the Gauss–Newton Hessian of a cost made of squares: positive semidefinite, and good
-            where the deviations are small and no pose is a constraint. A path through poses that are constraints needs
-            exact ones: without them a solver may take it for infeasible.
+            CasADi's solvers has the Gauss–Newton Hessian of a least-squares cost: positive semidefinite, and good for
+            small deviations without constraints on poses. A path through poses that are constraints needs exact ones:
+            without them a solver may report it infeasible.
         sections: abscissae X in [0, 1] of further sections, rod by rod.
         actuators: actuators whose effort and conjugate are wanted, for a tendon its tension and its length.
         compiler: C compiler; by default the command in the environment variable CC, then cc, gcc, clang, python-zig.
-        progress: told the function or file under way, the number of finished ones, and of all; not called if all
-            files are compiled.
+        progress: callback with the function or file under way, the number of finished ones, and of all; not called if
+            all files are compiled.
 
     Returns:
         outputs ``residual``, shape (size,), then for every rod and body ``tip_…`` or ``body_…``, shape (7,): position,
         m, and quaternion w x y z; for every rod of ``sections`` ``sections_…`` with such a column for each section;
-        for every one of ``actuators`` its effort and its conjugate, ``tension_…``, N, and ``length_…``, m.
+        for each of ``actuators`` its effort and its conjugate, ``tension_…``, N, and ``length_…``, m.
 
     Raises:
         ExportError: the name is no C identifier, the model has no scalar form, there is no compiler, or it fails; or
@@ -94,12 +94,12 @@ def compiled_stage(
 
 
 def written_in_c(functions: Iterator[ca.Function], name: str, progress: StageProgress | None) -> dict[str, str]:
-    """Sources and headers of functions by file name, each function in a separate file.
+    """Write sources and headers of functions, by file name, each function in a separate file.
 
     Args:
-        functions: :data:`PARTS` functions, which take their time to be made one after the other.
-        name: of the stage, for the progress.
-        progress: told of every function that is written.
+        functions: :data:`PARTS` functions, each of which takes time to make.
+        name: name of the stage, for the progress.
+        progress: callback for every function that is written.
     """
     texts: dict[str, str] = {}
     for done in range(PARTS):
@@ -141,7 +141,7 @@ def _check_wanted(model: Model, sections: Mapping[str, Sequence[float]], actuato
 
 
 def _one_of(names: Mapping[str, object]) -> str:
-    """Remedy for a name that is not there."""
+    """Remedy for a name that does not exist: the list of names."""
     if not names:
         return "leave it out, the scene has none"
     return f"take one of {', '.join(names)}"
@@ -154,12 +154,12 @@ def stage_functions(
     sections: Mapping[str, Sequence[float]] | None = None,
     actuators: Sequence[str] = (),
 ) -> Iterator[ca.Function]:
-    """The function, its Jacobian, its adjoint and the adjoint's Jacobian, named as ``casadi.external`` looks for them.
+    """Make the function, its Jacobian, its adjoint and the adjoint's Jacobian, named for ``casadi.external``.
 
     Args:
         model: the model.
-        name: what the function is called.
-        curvature: whether the last one is exact.
+        name: name of the function.
+        curvature: whether the Jacobian of the adjoint is exact.
         sections: abscissae of further sections, rod by rod.
         actuators: actuators whose effort and conjugate are wanted.
     """
@@ -172,11 +172,11 @@ def stage_functions(
 
 
 def adjoint_and_second(plain: ca.Function, slopes: ca.Function, curvature: bool) -> Iterator[ca.Function]:
-    """The adjoint of a function, and the Jacobian of that.
+    """Make the adjoint of a function, and the Jacobian of the adjoint.
 
     Args:
         plain: the function.
-        slopes: its Jacobian, as CasADi takes it.
+        slopes: its Jacobian, in the form that CasADi needs.
         curvature: whether the Jacobian of the adjoint is exact.
     """
     reverse = plain.reverse(1)
@@ -190,9 +190,9 @@ def adjoint_and_second(plain: ca.Function, slopes: ca.Function, curvature: bool)
 
 
 def written(function: ca.Function, name: str) -> ca.Function:
-    """A function as scalar instructions with common terms shared, or where they are too many for loops in C.
+    """Write a function in scalars with common terms shared, or for loops in C if there are too many instructions.
 
-    A function that leaves out terms which it does not need, as of rods that are apart, stays as it is.
+    A function that skips unneeded terms, such as those of distant rods, stays as it is.
     """
     if chooses(function):
         return _named(function, name)
@@ -203,7 +203,7 @@ def written(function: ca.Function, name: str) -> ca.Function:
 
 
 def _named(function: ca.Function, name: str) -> ca.Function:
-    """A function of matrices under a name."""
+    """Give a function of matrices a name."""
     if function.name() == name:
         # Around it a second function would have its name.
         return function
@@ -212,7 +212,7 @@ def _named(function: ca.Function, name: str) -> ca.Function:
 
 
 def poses_of(model: Model | RelaxedContact) -> dict[str, ca.Function]:
-    """The poses of tips and bodies, under the names that they have as results."""
+    """Return the poses of tips and bodies, by their names as results."""
     poses = {f"tip_{rod}": tip for rod, tip in model.tip.items()}
     return poses | {f"body_{identifier(body)}": pose for body, pose in model.body.items()}
 
@@ -220,9 +220,9 @@ def poses_of(model: Model | RelaxedContact) -> dict[str, ca.Function]:
 def _further_outputs(
     model: Model, sections: Mapping[str, Sequence[float]], actuators: Sequence[str]
 ) -> dict[str, ca.Function]:
-    """Poses of sections, efforts and conjugates of actuators with their derivatives, by name.
+    """Make poses of sections, and efforts and conjugates of actuators, with their derivatives, by name.
 
-    Each function takes the arguments of the residual, and gives a value and its derivative with each argument.
+    Each function takes the arguments of the residual, and returns a value and its derivative by each argument.
     """
     further: dict[str, ca.Function] = {}
     for rod, abscissae in sections.items():
@@ -240,7 +240,7 @@ def _further_outputs(
 
 
 def _section_poses(model: Model, rod: str, abscissae: Sequence[float]) -> ca.Function:
-    """Arguments of the residual ↦ (poses of sections of a rod, 7×k, and their derivatives with each argument)."""
+    """Make arguments of the residual ↦ (poses of sections of a rod, 7×k, and their derivatives by each argument)."""
     discrete = model.discrete
     x = ca.MX.sym("x", discrete.size)
     inputs = ca.MX.sym("inputs", discrete.layout.size)
@@ -263,7 +263,7 @@ def _stage(model: Model | RelaxedContact, name: str, further: Mapping[str, ca.Fu
 
 
 def _slopes(model: Model | RelaxedContact, plain: ca.Function, further: Mapping[str, ca.Function]) -> ca.Function:
-    """∂ output / ∂ input, output by output, with the model's own Jacobians."""
+    """Make ∂ output / ∂ input, output by output, with the Jacobians of the model."""
     arguments = model.residual.mx_in()
     poses = [*model.tip_jacobian.values(), *model.body_jacobian.values()]
     blocks = [model.jacobian(*arguments)[0], model.input_jacobian(*arguments)]
@@ -277,14 +277,14 @@ def _slopes(model: Model | RelaxedContact, plain: ca.Function, further: Mapping[
 
 
 def bare_second(plain: ca.Function, slopes: ca.Function, adjoint: ca.Function) -> ca.Function:
-    """Jacobian of the adjoint with its multipliers; with the arguments of the function it is left empty."""
+    """Make the Jacobian of the adjoint by its multipliers alone; the blocks by the arguments are left empty."""
     sizes = [plain.numel_in(i) for i in range(plain.n_in())]
     hessian: list[list[Matrix]] = [[ca.MX(rows, columns) for columns in sizes] for rows in sizes]
     return _second(plain, slopes, adjoint, adjoint.mx_in(), hessian)
 
 
 def exact_second(plain: ca.Function, slopes: ca.Function, adjoint: ca.Function) -> ca.Function:
-    """Jacobian of the adjoint: with the arguments of the function column by column, in a loop."""
+    """Make the Jacobian of the adjoint; the blocks by the arguments are computed column by column, in a loop."""
     symbols = adjoint.mx_in()
     arguments = range(plain.n_in())
     sizes = [plain.numel_in(i) for i in arguments]
@@ -310,14 +310,14 @@ def _second(
     symbols: Sequence[Matrix],
     hessian: Sequence[Sequence[Matrix]],
 ) -> ca.Function:
-    """Jacobian of the adjoint.
+    """Make the Jacobian of the adjoint from its blocks.
 
     Args:
         plain: the function.
-        slopes: its Jacobian, of which the Jacobian of the adjoint with its multipliers is made.
+        slopes: its Jacobian, which gives the derivative of the adjoint by its multipliers.
         adjoint: the adjoint.
         symbols: arguments of the adjoint.
-        hessian: derivatives of the adjoint with the arguments of the function, block by block.
+        hessian: derivatives of the adjoint by the arguments of the function, block by block.
     """
     count = plain.n_in()
     blocks = slopes.call(symbols[: slopes.n_in()])
@@ -331,7 +331,7 @@ def _second(
 
 
 def _by_directions(adjoint: ca.Function, symbols: Sequence[Matrix], j: int) -> list[Matrix]:
-    """∂ adjoint / ∂ argument j, output by output, in symbols of the arguments."""
+    """Write ∂ adjoint / ∂ argument j, output by output, in symbols of the arguments."""
     along = _along(adjoint, j)
     columns = _columns_with_entries(adjoint, j)
     directions = ca.DM.eye(symbols[j].numel())[:, columns]
@@ -345,7 +345,7 @@ def _by_directions(adjoint: ca.Function, symbols: Sequence[Matrix], j: int) -> l
 
 
 def _along(adjoint: ca.Function, j: int) -> ca.Function:
-    """(arguments of the adjoint, direction in argument j) ↦ derivative of the adjoint in that direction."""
+    """Make (arguments of the adjoint, direction in argument j) ↦ derivative of the adjoint in that direction."""
     forward = adjoint.forward(1)
     symbols = adjoint.mx_in()
     direction = ca.MX.sym("direction", symbols[j].numel())
@@ -360,14 +360,14 @@ def _along(adjoint: ca.Function, j: int) -> ca.Function:
 
 
 def _columns_with_entries(adjoint: ca.Function, j: int) -> list[int]:
-    """Entries of an argument with which the adjoint changes at all."""
+    """Entries of an argument on which the adjoint depends."""
     patterns = [adjoint.jac_sparsity(i, j) for i in range(adjoint.n_out())]
     columns = {column for pattern in patterns for column in pattern.get_col()}
     return sorted(columns)
 
 
 def jacobian_of(function: ca.Function, symbols: Sequence[Matrix], blocks: Sequence[Matrix]) -> ca.Function:
-    """Blocks as the function that CasADi takes for a Jacobian: its outputs are inputs too, without an entry."""
+    """Make the function that CasADi accepts as a Jacobian of blocks: it also takes the outputs, as empty inputs."""
     outputs = [ca.MX.sym(f"out_{name}", ca.Sparsity(*function.size_out(name))) for name in function.name_out()]
     words_in = [*function.name_in(), *[f"out_{name}" for name in function.name_out()]]
     words_out = [f"jac_{o}_{i}" for o in function.name_out() for i in function.name_in()]

@@ -1,4 +1,4 @@
-"""Statuses of the solver in C, which are outcomes, and of steps of a motion, in the order of their numbers."""
+"""Statuses of the solver in C, which are outcomes, and of steps of a motion, by number."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def _without(*others: Outcome) -> Outcomes:
 
 
 OUTCOMES = _without(Outcome.CONTACT_UNSETTLED, Outcome.OUT_OF_RANGE)
-"""Statuses of the solver of rods, which does not look for contact."""
+"""Statuses of the solver of rods without exact contact."""
 
 CONTACT_OUTCOMES = _without(Outcome.OUT_OF_RANGE)
 """Statuses of the solver of rods in exact contact."""
@@ -29,7 +29,7 @@ TUBE_OUTCOMES = _without(
 
 
 class MotionStatus(Enum):
-    """Every way a step in C can end; the value is the sentence that a user reads. New members come last."""
+    """Outcomes of a step in C; the value is the sentence for the user. New members come last."""
 
     DONE = "Done: the equations of motion are solved to the tolerance."
     NOT_SOLVED = "The equations of the step were not solved, in parts neither: take shorter steps, or move less in one."
@@ -57,7 +57,7 @@ class MotionStatus(Enum):
 
     @property
     def label(self) -> str:
-        """A word for a program."""
+        """Name of the outcome for programs."""
         return self.name.lower()
 
 
@@ -66,22 +66,22 @@ MOTION_STATUSES = tuple(MotionStatus)
 
 
 def status_words(names: Names, outcomes: Outcomes = OUTCOMES, prefix: str = "SOLVER") -> dict[str, str]:
-    """Words of the templates of a solver on statuses.
+    """Words of the templates of a solver for its statuses.
 
     Args:
-        names: what things are called.
+        names: names of the library and its parts.
         outcomes: the statuses.
-        prefix: what sources that are alike in all folders call them by.
+        prefix: prefix of the statuses in sources that are equal in all folders.
     """
     return _words(names.macro, prefix, outcomes)
 
 
 def motion_status_words(names: Names, *, may_lie_apart: bool) -> dict[str, str]:
-    """Words of the templates on the statuses of motions.
+    """Words of the templates for the statuses of motions.
 
     Args:
-        names: what things are called.
-        may_lie_apart: whether sections at which contact is summed may lie too far apart: the last status tells it.
+        names: names of the library and its parts.
+        may_lie_apart: whether sections at which contact is summed may be too far apart, which is the last status.
     """
     statuses = MOTION_STATUSES if may_lie_apart else MOTION_STATUSES[:-1]
     words = _words(f"{names.macro}_MOTION", "SOLVER_MOTION", statuses)
@@ -100,7 +100,7 @@ def _words(macro: str, prefix: str, statuses: Sequence[Outcome | MotionStatus]) 
 
 
 def _enumerators(sentences: Mapping[str, str]) -> str:
-    """Members of an enumeration, numbered in their order, with a sentence each."""
+    """Write the members of an enumeration, numbered in order, each with its sentence."""
     width = max(map(len, sentences))
     lines = []
     for number, (symbol, sentence) in enumerate(sentences.items()):

@@ -1,4 +1,4 @@
-"""Scalar functions as lists of values with constants apart: functions that compute alike share one."""
+"""Scalar functions as lists of values with separate constants, so that functions that compute alike share code."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from cosserat_casadi.compiling.listing import Constant, Listing, Read, Value
 from cosserat_casadi.maths.typing import FloatArray
 
 Key = tuple[Hashable, ...]
-"""Key that streams which compute alike share."""
+"""Key of all streams that compute alike."""
 
 ROUNDING = 2.0**-48
-"""Difference of two constants, over the larger, up to which they are one number that was rounded on its way here."""
+"""Difference of two constants, over the larger one, up to which they count as one number with rounding errors."""
 
 
 def names_of_part(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
@@ -25,28 +25,28 @@ def names_of_part(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
 
 
 def scalars(function: ca.Function) -> tuple[list[ca.SX], list[ca.SX]]:
-    """Arguments and results as scalars, without entries that are zero whatever the arguments."""
+    """Arguments and results as scalars, without structural zeros."""
     symbols = function.sx_in()
     return symbols, [ca.sparsify(result) for result in function.call(symbols)]
 
 
 def stacked(function: ca.Function) -> ca.Function:
-    """The entries of all results in one column, as scalars."""
+    """Stack the entries of all results in one column, in scalars."""
     symbols, results = scalars(function)
     entries = [entry for result in results for entry in result.nonzeros()]
     return ca.Function("stacked", symbols, [ca.vertcat(*entries)], *names_of_part(function.name_in()))
 
 
 class Stream:
-    """The values of a scalar function with constants apart: two legs of a robot differ in constants alone.
+    """The values of a scalar function with separate constants: two legs of a robot differ in constants alone.
 
-    An unknown is read by its number among the unknowns that the function reads: 3 x₀ + x₄ reads x = [0, 4], and
-    computes with the constant 3 what 5 x₁ + x₂ computes with 5.
+    An unknown has its number among the unknowns that the function reads: 3 x₀ + x₄ reads x = [0, 4], and differs from
+    5 x₁ + x₂ only in its reads and its constant.
 
     Attributes:
         function: map (x, inputs, factor) ↦ entries.
-        listing: its values.
-        reads: for each argument the entries that are read; an argument of one entry is read whole.
+        listing: values of the function.
+        reads: entries that are read of each argument; an argument with one entry is always read.
         constants: value of every use of a constant, in order.
     """
 
@@ -74,10 +74,10 @@ class Stream:
 
     @classmethod
     def settled(cls, function: ca.Function) -> Stream:
-        """The values without products with a one that is off by rounding.
+        """Make a stream without products with a one that has rounding errors.
 
-        CasADi leaves out products with one. A one that a machine rounds otherwise, such as a stiffness over that which
-        scales the equations, would make other values of one leg of a robot than of the next.
+        CasADi leaves out products with one. A one with rounding errors, such as a stiffness over the unit of the
+        equations, would give one leg of a robot other values than the next.
         """
         stream = cls(function)
         ones = [c != 1.0 and abs(c - 1.0) <= ROUNDING for c in stream.constants]
@@ -91,7 +91,7 @@ class Stream:
 
     @property
     def key(self) -> Key:
-        """Key that streams which compute alike share: their values but for constants, and the functions they call."""
+        """Key of all streams that compute alike: their values up to constants, and the functions that they call."""
         values = tuple(self._without_constant(value) for value in self.listing.values)
         functions = {hash(call.function): call.function for call in self.listing.calls}
         contents = {number: Stream(function).content for number, function in functions.items()}
@@ -100,11 +100,11 @@ class Stream:
 
     @property
     def content(self) -> Hashable:
-        """Key that functions with one result share: functions of several rods of a scene may."""
+        """Key of all functions with an equal result, such as functions of equal rods of a scene."""
         return self.key, tuple(self.constants)
 
     def result(self, symbols: Sequence[ca.SX], constants: Sequence[ca.SX]) -> ca.SX:
-        """The result in other symbols of the entries that it reads of each argument, and with other constants."""
+        """Write the result in given symbols for the entries that it reads of each argument, and for the constants."""
         arguments = [_entries(symbol) for symbol in symbols]
         next_constant = iter(constants)
         known: dict[int, ca.SX] = {}
@@ -117,7 +117,7 @@ class Stream:
         return ca.vertcat(*self.listing.entries(0, expressions))
 
     def _without_constant(self, value: Value) -> Value | None:
-        """A value as streams that compute alike have it."""
+        """Return a value without its constant, as in all streams that compute alike."""
         if isinstance(value, Constant):
             return None
         if isinstance(value, Read):
@@ -126,7 +126,7 @@ class Stream:
 
 
 def alike(keys: Iterable[Hashable]) -> list[list[int]]:
-    """Numbers of equal keys, in groups."""
+    """Group the indices of equal keys."""
     groups: dict[Hashable, list[int]] = {}
     for i, key in enumerate(keys):
         groups.setdefault(key, []).append(i)
@@ -134,10 +134,10 @@ def alike(keys: Iterable[Hashable]) -> list[list[int]]:
 
 
 def shared(streams: Sequence[Stream], name: str) -> tuple[ca.Function, list[list[float]]]:
-    """A function for streams that compute alike, and the constants of each stream.
+    """Make one function for streams that compute alike, and list the constants of each stream.
 
-    Constants that are equal in all streams stay in the code; uses that vary alike share one argument. Rounding makes
-    no difference: it is another on another machine, which shall write the same code.
+    Constants that are equal in all streams stay in the code; uses that vary alike share one argument. Constants are
+    compared up to rounding, which varies between machines, so that all machines write the same code.
     """
     first = streams[0]
     uses = list(zip(*(stream.constants for stream in streams), strict=True))
@@ -162,13 +162,13 @@ def shared(streams: Sequence[Stream], name: str) -> tuple[ca.Function, list[list
 
 
 def same_but_for_rounding(one: Sequence[float] | FloatArray, other: Sequence[float] | FloatArray) -> bool:
-    """Whether constants are equal, one by one, but for rounding."""
+    """Whether constants are equal, one by one, up to rounding."""
     pairs = zip(np.ravel(one), np.ravel(other), strict=True)
     return all(_same(float(first), float(second)) for first, second in pairs)
 
 
 def _same(one: float, other: float) -> bool:
-    """Whether two constants are equal but for rounding; an infinite one is no other number rounded."""
+    """Whether two constants are equal up to rounding; infinity equals no other number."""
     if one == other:
         return True
     largest = max(abs(one), abs(other))
@@ -176,7 +176,7 @@ def _same(one: float, other: float) -> bool:
 
 
 def _numbered(values: Sequence[float]) -> dict[float, int]:
-    """A number for each value, one for all values that are equal but for rounding."""
+    """Number the values; values that are equal up to rounding have one number."""
     ordered = sorted(set(values))
     numbers = dict.fromkeys(ordered[:1], 0)
     for before, value in pairwise(ordered):

@@ -11,12 +11,12 @@ from cosserat_casadi.model.build import Model
 
 
 def vector_words(names: Names, entries: list[dict[str, Any]], word: str) -> dict[str, str]:
-    """Words of a vector: macros and rows of the README, default values, members of its struct, copies from it and back.
+    """Words for a vector: macros and rows of the README, default values, members of its struct, copies to and from it.
 
     Args:
-        names: what things are called.
+        names: names of the library and its parts.
         entries: inputs or parameters as in the manifest.
-        word: "input" or "parameter", with which these words begin.
+        word: "input" or "parameter", the prefix of these words.
     """
     macros = list[str]()
     rows = list[str]()
@@ -52,11 +52,11 @@ def vector_words(names: Names, entries: list[dict[str, Any]], word: str) -> dict
 
 
 def result_struct_words(model: Model, names: Names) -> dict[str, str]:
-    """Words of the struct of results.
+    """Words for the struct of results.
 
     Args:
         model: the exported model.
-        names: what things are called.
+        names: names of the library and its parts.
     """
     passed = ", parameters" if model.parameters.size else ""
     poses = {pose_name(names, "tip", rod): names.function("tip", rod) for rod in names.rods}
@@ -83,16 +83,16 @@ def result_struct_words(model: Model, names: Names) -> dict[str, str]:
 
 
 def listed(values: list[float]) -> str:
-    """Numbers as text, with the digits that they need."""
+    """Write numbers with the digits that they need."""
     return ", ".join(f"{value:g}" if float(f"{value:g}") == value else repr(value) for value in values)
 
 
 def initialiser(value: float, names: Names) -> str:
-    """A number that float and double take without a word from the compiler."""
+    """Write a number that compilers accept without warnings as float and as double."""
     written = listed([value])
     return written if float(np.float32(value)) == value else f"({names.name}_real){written}"
 
 
 def pose_name(names: Names, word: str, owner: str) -> str:
-    """Name of the pose of a tip or a body, without the name of the library."""
+    """Name of the pose of a tip or a body, without the prefix of the library."""
     return names.function(word, owner).removeprefix(f"{names.name}_")

@@ -1,4 +1,4 @@
-"""A model compiled to a program that times itself: the exported sources with the exported demo."""
+"""Compilation of a model to a program that times itself: the exported sources with the exported demo."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ from cosserat_casadi.compiling.compiler import compiler_words
 from cosserat_casadi.model.build import Model
 
 NAME = "timed"
-"""Beginning of the symbols of the program."""
+"""Prefix of the symbols of the program."""
 
 FLAGS = ("-O2", "-std=c99")
 
 REPEAT = 500
-"""Runs of each task, of which the best counts."""
+"""Number of runs of each task, of which the fastest counts."""
 
 
 PATIENCE = 0.05
-"""Seconds in which the best of several runs in CasADi's virtual machine is sought."""
+"""Time, s, for repeated runs in CasADi's virtual machine, of which the fastest counts."""
 
 
 @dataclass(frozen=True)
@@ -38,10 +38,10 @@ class Times:
     """Times that the program measured, µs.
 
     Attributes:
-        cold: solve from the unloaded rod.
-        warm: solve from the equilibrium of inputs one per cent away.
-        igm: Inverse Geometric Model of the first rod.
-        jacobian: residual and Jacobian.
+        cold: time of a solve from the unloaded rod.
+        warm: time of a solve from the equilibrium at inputs one per cent away.
+        igm: time of the inverse geometric model of the first rod.
+        jacobian: time of residual and Jacobian.
     """
 
     cold: float
@@ -51,10 +51,10 @@ class Times:
 
 
 class Program:
-    """A model on its way through the compiler, which works while other things are done.
+    """A model under compilation, in the background.
 
     Args:
-        model: what to compile.
+        model: model to compile.
         compiler: command of a C compiler.
     """
 
@@ -73,12 +73,12 @@ class Program:
         self._compilation = subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
 
     def wait(self) -> None:
-        """Until the compiler is done."""
+        """Wait until the compiler is done."""
         _, told = self._compilation.communicate()
         self._told = told.decode(errors="replace").strip()
 
     def times(self) -> Times | str:
-        """Run it, compiled; a sentence where compiler or program fails."""
+        """Run the compiled program; return its times, or a sentence if compiler or program fails."""
         if self._compilation.returncode:
             return f"the compiler fails: {' '.join(self._told[-200:].split())}"
         command = ["./demo", "--repeat", str(REPEAT)]
@@ -117,7 +117,7 @@ def _sources(model: Model, names: Names) -> dict[str, str]:
 
 
 def best_time(task: Callable[[], object]) -> float:
-    """Best time of several runs, µs."""
+    """Measure the fastest of several runs, µs."""
     # The first run builds functions.
     task()
     best = inf

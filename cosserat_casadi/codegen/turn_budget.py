@@ -1,7 +1,7 @@
-"""How much a turn of a control loop may evaluate by default: a fixed number, or as much as fits a period.
+"""Default budget of a turn of a control loop: a fixed number of evaluations, or as many as fit a period.
 
-A turn is bounded in evaluations. What one takes is measured by a program that is made of the sources to be written, or
-foreseen by the laws of accuracy/cost.py where there is no compiler.
+A turn is bounded in evaluations. The time of an evaluation is measured by a program of the sources to be written, or
+estimated by the laws of accuracy/cost.py without a compiler.
 """
 
 from __future__ import annotations
@@ -24,15 +24,15 @@ from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
 
 MOST_ITERATIONS = 40
-"""Newton steps of a turn without a period; turns that go well take two to five."""
+"""Most Newton steps of a turn without a period; ordinary turns take two to five."""
 
 SETTLING_ITERATIONS = 4
-"""Most Newton steps from a point on a path, found as exactly as the path needs, to a solution; two are usual."""
+"""Most Newton steps from a point on a path, which is as exact as the path needs, to a solution; two are usual."""
 
 FORESEEN_STEPS = 5.0
-"""A Newton step over residual and Jacobian of plain rods: tendons, joints, factorisation and substitution come beside.
+"""Time of a Newton step over residual and Jacobian of plain rods, with tendons, joints and factorisation.
 
-Of rods, robots with tendons and the six-rod platform, measured, it was 1 to 4.3.
+The measured ratio was 1 to 4.3 for rods, robots with tendons and the six-rod platform.
 """
 
 FORESEEN_POINTS = 1.0
@@ -42,7 +42,7 @@ FORESEEN_ENDS = 9.0
 """Time of the end of a turn over residual and Jacobian of plain rods: Jacobian, derivatives. It was 3 to 8.4."""
 
 TIME_LIMIT = 300.0
-"""Time, s, after which a compiler, or the program that measures, is given up."""
+"""Time limit, s, of the compiler and of the measuring program."""
 
 
 @dataclass(frozen=True)
@@ -50,10 +50,10 @@ class TurnCosts:
     """Times of the parts of a turn, µs.
 
     Attributes:
-        step: residual, Jacobian and its factorisation: a Newton step.
-        point: the rate of the residual and the tangent, at a point of a path.
-        end: the verdict on the solution and its derivatives.
-        measured: whether on this machine; else foreseen.
+        step: time of a Newton step: residual, Jacobian and its factorisation.
+        point: time of a point of a path: rate of the residual, and tangent.
+        end: time of the verdict on the solution and its derivatives.
+        measured: whether the times were measured on this machine; else they are estimated.
     """
 
     step: float
@@ -77,10 +77,10 @@ class TurnBudget:
     """Steps that a turn may take by default.
 
     Attributes:
-        iterations: Newton steps.
-        steps: points between the last inputs and the new ones.
-        period: time that a turn was to fit, s; None where none was given.
-        costs: times of the parts of a turn; None where no time was given.
+        iterations: number of Newton steps.
+        steps: number of points between the last inputs and the new ones.
+        period: time that a turn may take, s; None without a period.
+        costs: times of the parts of a turn; None without a period.
     """
 
     iterations: int = MOST_ITERATIONS
@@ -105,7 +105,7 @@ class TurnBudget:
 
     @property
     def entry(self) -> dict[str, object]:
-        """Entry of the manifest."""
+        """Entry in the manifest."""
         described: dict[str, object] = {"max_iterations": self.iterations, "max_continuation_steps": self.steps}
         if self.costs is not None:
             worst = self.costs.worst(self.iterations, self.steps)
@@ -119,14 +119,14 @@ ALWAYS = TurnBudget()
 
 
 def fitting(costs: TurnCosts, period: float) -> TurnBudget:
-    """The largest budget, up to the one without a period, whose longest turn fits.
+    """Find the largest budget, at most the one without a period, whose longest turn fits.
 
     Args:
-        costs: of the parts of a turn.
+        costs: times of the parts of a turn.
         period: time that a turn may take, s.
 
     Raises:
-        ExportError: not even one Newton step on the way and one at the end fit.
+        ExportError: the period is too short for one Newton step on the way and one at the end.
     """
     for iterations in range(MOST_ITERATIONS, 0, -1):
         steps = (iterations + 1) // 2
@@ -137,15 +137,15 @@ def fitting(costs: TurnCosts, period: float) -> TurnBudget:
 
 
 def costs_of(model: Model, names: Names, files: Mapping[str, str]) -> TurnCosts:
-    """Times of the parts of a turn: measured where there is a compiler, else foreseen.
+    """Determine the times of the parts of a turn, by measurement if there is a compiler, else by estimates.
 
     Args:
         model: the exported model.
-        names: what things are called.
+        names: names of the library and its parts.
         files: sources and headers by name.
 
     Raises:
-        ExportError: there is a compiler, but it fails, or its program does.
+        ExportError: there is a compiler, but it fails, or the program fails.
     """
     try:
         compiler = find_compiler()
@@ -155,7 +155,7 @@ def costs_of(model: Model, names: Names, files: Mapping[str, str]) -> TurnCosts:
 
 
 def measured_costs(model: Model, names: Names, files: Mapping[str, str], compiler: str) -> TurnCosts:
-    """Times of the parts of a turn, measured by a program that this compiler makes.
+    """Measure the times of the parts of a turn by a program of this compiler.
 
     Raises:
         ExportError: compiler or program fail, or take too long.

@@ -1,1 +1,1 @@
-"""A function of CasADi as C, and C as machine code: printers, sources, compilers and their cache."""
+"""Translation of CasADi functions to C, and of C to machine code: printers, sources, compilers and their cache."""

@@ -1,11 +1,11 @@
-"""Where compiled libraries and their texts are kept: under names that hold a hash of their origin, and one of content.
+"""Cache of compiled libraries and their texts, by names with a hash of their origin and a hash of their content.
 
-The first is of all that a file is made of: of a library its sources in C, of texts in C the model and the options that
-they are written for. The second tells a file that was cut off or written over, as by a full disk, before it is loaded:
-loading such a library could end the process.
+The first hash covers everything from which a file is made: the C sources of a library, or the model and the options of
+texts in C. The second one reveals a file that was truncated or overwritten, for example by a full disk, before it is
+loaded: to load such a library could end the process.
 
-The least recently used files are removed beyond a limit, so that the folder never grows without bound. Processes may do
-all this at once: a file appears whole or not at all, and one that was used in the last hour is not removed.
+Beyond a limit the least recently used files are removed, but none that was used in the last hour. Processes may use the
+cache at once, as a file appears complete or not at all.
 """
 
 from __future__ import annotations
@@ -43,35 +43,35 @@ FOLDERS = {"win32": "AppData/Local", "darwin": "Library/Caches"}
 """The folder of caches in a user's home, by platform; elsewhere it is .cache."""
 
 LIMIT = 500_000_000
-"""Bytes of all files of ours in the folder, beyond which some are removed."""
+"""Largest size of all files of the cache, bytes."""
 
 MOST_TALLIED = 60_000
-"""Bytes of a tally, a millisecond each: nothing takes that long to compile."""
+"""Largest size of a tally, bytes, of a millisecond each: nothing takes that long to compile."""
 
 IN_USE = 3600.0
-"""Seconds since its last use for which a library is not removed: a process may be about to load it."""
+"""Time since its last use, s, for which a library is not removed, as a process may be about to load it."""
 
 SCRATCH = "cosserat_casadi-compiling-"
-"""How folders begin in which libraries are compiled."""
+"""Prefix of folders in which libraries are compiled."""
 
 LIBRARY = ".so"
 TEXTS = ".texts"
 TALLY = ".tally"
-"""Ends of the names of libraries, of texts, and of tallies of the time that went without a library."""
+"""Suffixes of libraries, of texts, and of tallies of the time spent without a library."""
 
 OURS = re.compile(rf"\w+-[0-9a-f]{{20}}(-[0-9a-f]{{20}})?(\{LIBRARY}|\{TEXTS}|\{TALLY})")
-"""Names of files of the cache; libraries of earlier versions had no hash of their content.
+"""Pattern of the names of files of the cache; libraries of earlier versions had no hash of their content.
 
-Whatever else lies in the folder is not ours to remove."""
+Other files in the folder are never removed."""
 
 ABANDONED = 86400.0
-"""Seconds after which what a killed compilation left is removed."""
+"""Time, s, after which the remains of a killed compilation are removed."""
 
 
 def cache_folder() -> Path:
-    """Where compiled libraries are kept: what the variable names, or the cache folder of the user's platform.
+    """Return the folder of the cache: the one that the variable names, or the cache folder of the user's platform.
 
-    Of a user who has no home it is a folder that is removed when the process ends.
+    For a user without a home it is a folder that is removed when the process ends.
     """
     chosen = os.environ.get(VARIABLE)
     if chosen == OFF:
@@ -91,24 +91,24 @@ def cache_folder() -> Path:
 
 @cache
 def _folder_of_process() -> Path:
-    """A folder that is removed when the process ends."""
+    """Make a folder that is removed when the process ends."""
     folder = tempfile.mkdtemp(prefix="cosserat_casadi-")
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     return Path(folder)
 
 
 def file_name(stem: str, content: bytes, ending: str = LIBRARY) -> str:
-    """Name of a library or of texts: a stem that tells the origin, and a hash of the content."""
+    """Name of a library or of texts: a stem that identifies the origin, and a hash of the content."""
     return f"{stem}-{hashlib.sha256(content).hexdigest()[:20]}{ending}"
 
 
 def kept_file(folder: Path, stem: str, ending: str = LIBRARY) -> Path | None:
-    """A file of the folder, its content as it was written; one that has changed since is removed.
+    """Find a file of the folder with unchanged content; a file that has changed is removed.
 
     Args:
-        folder: with the files.
-        stem: what the name of the file begins with: it tells the origin.
-        ending: of its name.
+        folder: folder with the files.
+        stem: prefix of the file name, which identifies the origin.
+        ending: suffix of the file name.
 
     Returns:
         The file; None if the folder has no such file.
@@ -125,12 +125,12 @@ def kept_file(folder: Path, stem: str, ending: str = LIBRARY) -> Path | None:
 
 
 def kept_texts(name: str, made_from: Sequence[Any], write: Callable[[], Mapping[str, str]]) -> dict[str, str]:
-    """Texts by file name, written once for a model and its options: a later process takes them from the folder.
+    """Return texts by file name, written once for a model and its options; later processes read them from the folder.
 
     Args:
-        name: what the name of their file in the folder begins with.
+        name: prefix of the name of their file in the folder.
         made_from: the model and all options on which the texts depend.
-        write: writes the texts.
+        write: function that writes the texts.
     """
     key = key_of(*made_from)
     kept = None if key is None else _texts_in_cache(f"{name}-{key}")
@@ -144,7 +144,7 @@ def kept_texts(name: str, made_from: Sequence[Any], write: Callable[[], Mapping[
 
 
 def _texts_in_cache(stem: str) -> dict[str, str] | None:
-    """Texts in the folder under a stem; None where there are none."""
+    """Read the texts in the folder with a stem; None without them."""
     with suppress(OSError):
         kept = kept_file(cache_folder(), stem, TEXTS)
         if kept is not None:
@@ -155,7 +155,7 @@ def _texts_in_cache(stem: str) -> dict[str, str] | None:
 
 
 def _keep_texts(folder: Path, stem: str, texts: Mapping[str, str]) -> None:
-    """Keep texts in the folder, unless it takes none: they are at hand all the same."""
+    """Keep texts in the folder if it can be written to; otherwise they are used without it."""
     content = zlib.compress(json.dumps(texts).encode(), 1)
     with suppress(OSError, WriteError):
         folder.mkdir(parents=True, exist_ok=True)
@@ -164,7 +164,7 @@ def _keep_texts(folder: Path, stem: str, texts: Mapping[str, str]) -> None:
 
 
 def tallied(stem: str | None) -> float:
-    """Time that all processes have noted under a stem, s: see :func:`tally`."""
+    """Time that all processes have recorded under a stem, s; see :func:`tally`."""
     if stem is None:
         return 0.0
     with suppress(OSError):
@@ -173,9 +173,9 @@ def tallied(stem: str | None) -> float:
 
 
 def tally(stem: str | None, seconds: float) -> None:
-    """Note time that went for want of a library, for processes to come: each process may be short.
+    """Record time spent for want of a library, for later processes, as each process may be short.
 
-    A byte stands for a millisecond, so that processes may append to the file at once. Without a stem nothing is noted.
+    A byte stands for a millisecond, so that processes may append to the file at once. Without a stem nothing happens.
     """
     if stem is None:
         return
@@ -192,13 +192,13 @@ def _tally_of(stem: str) -> Path:
 
 
 def content_hash(compiler: Sequence[str], flags: Sequence[str], contents: Iterable[bytes]) -> str:
-    """A hash of sources and of all else that a library depends on.
+    """Hash the sources and everything else on which a library depends.
 
     Args:
-        compiler: words of its command. Programs among them are told by their files, since asking a compiler for its
-            version would mean to run it.
-        flags: its flags.
-        contents: of the sources and of the files that they include, each as in its file.
+        compiler: words of its command. Programs among them are identified by their files, because to ask a compiler for
+            its version would mean to run it.
+        flags: flags of the compiler.
+        contents: contents of the sources and of the files that they include.
     """
     programs = [_program_facts(word) for word in compiler]
     # The folder may lie in a home that machines of several kinds share.
@@ -211,7 +211,7 @@ def content_hash(compiler: Sequence[str], flags: Sequence[str], contents: Iterab
 
 
 def _program_facts(word: str) -> str:
-    """Path, size and time of a program; nothing where a word is an option."""
+    """Path, size and time of a program; an empty string for an option."""
     path = shutil.which(word)
     if path is None:
         return ""
@@ -223,17 +223,17 @@ def _program_facts(word: str) -> str:
 
 
 def mark_used(file: Path) -> None:
-    """Remember that a file is used now."""
+    """Mark a file as used now."""
     with suppress(OSError):
         os.utime(file, ns=(time.time_ns(), file.stat().st_mtime_ns))
 
 
 def keep_within(folder: Path, limit: int = LIMIT) -> None:
-    """Remove the least recently used libraries and texts beyond a limit, and what killed compilations left.
+    """Remove the least recently used libraries and texts beyond a limit, and the remains of killed compilations.
 
     Args:
-        folder: with the files.
-        limit: bytes.
+        folder: folder of the cache.
+        limit: largest size of all files, bytes.
     """
     now = time.time()
     files: list[tuple[float, int, Path]] = []

@@ -1,4 +1,4 @@
-"""Sources in C into one shared object, compiled once: the compiler, and the folder that keeps the objects."""
+"""Compilation of C sources into one shared object, once: the search for a compiler, and its calls."""
 
 from __future__ import annotations
 
@@ -39,15 +39,15 @@ LOG = logging.getLogger(__name__)
 REMEDY = "install gcc or clang, or pip install ziglang, or name one in the environment variable CC"
 
 COMPILERS = ("cc", "gcc", "clang", "python-zig cc")
-"""Commands that are looked for, in this order; the last comes from the package ziglang of PyPI."""
+"""Commands in the order of the search; the last one comes with the package ziglang of PyPI."""
 
 EXPORT_ANEW = "export the folder anew"
-"""Remedy where files of a folder are missing, of another version, or do not belong together."""
+"""Remedy for files of a folder that are missing, of another version, or do not belong together."""
 
 FLAGS: tuple[str, ...] = ("-O2", "-std=c99", "-fPIC")
 
 ENDS = (".c", ".cpp", ".cu")
-"""Ends of the names of sources."""
+"""Suffixes of source files."""
 
 LONGEST = 1200.0
 """Time that the compiler has for one file, s: the largest file of the examples takes it less than a tenth of that."""
@@ -65,17 +65,17 @@ def shared_object(
 ) -> Path:
     """Compile sources of one folder into the cache, unless that has been done; processes may do so at once.
 
-    A library of the cache whose content has changed since it was compiled is compiled again.
+    A library in the cache whose content has changed since it was compiled is compiled again.
 
     Args:
-        name: what the name of the object begins with.
+        name: prefix of the name of the object.
         sources: files to compile.
-        headers: files beside them that they include.
+        headers: files in their folder that they include.
         compiler: command of a C compiler, of :func:`find_compiler`.
-        progress: told the file that is compiled, the number of compiled files, and of all.
-        flags: of the compiler, :data:`FLAGS` by default.
-        origin: key of all that the sources were written from, by which the cache tells the library; by default the
-            sources do.
+        progress: callback with the file under compilation, the number of compiled files, and of all files.
+        flags: flags of the compiler, :data:`FLAGS` by default.
+        origin: key of the origin of the sources, which identifies the library in the cache; by default the sources
+            identify it.
 
     Raises:
         ExportError: a file is missing, the compiler fails, or the cache cannot be written to.
@@ -111,13 +111,13 @@ def compiled_texts(
     """Compile sources and headers that are texts by file name, as :func:`shared_object` compiles files.
 
     Args:
-        name: what the name of the object begins with.
+        name: prefix of the name of the object.
         texts: content by file name.
         compiler: command of a C compiler, of :func:`find_compiler`.
-        included: files that others include: they are not compiled by themselves.
-        progress: as there.
-        flags: as there.
-        origin: as there.
+        included: files that others include, which are not compiled separately.
+        progress: callback, as in :func:`shared_object`.
+        flags: flags of the compiler, as in :func:`shared_object`.
+        origin: key of the origin, as in :func:`shared_object`.
     """
     flags = FLAGS if flags is None else flags
     sources = [file for file in texts if file.endswith(ENDS) and file not in included]
@@ -137,14 +137,14 @@ def compiled_texts(
 
 
 def compiled_from(name: str, origin: str, compiler: str, flags: Sequence[str]) -> Path | None:
-    """The library of :func:`compiled_texts` of an origin and with these flags, where the cache has it; else None."""
+    """Find the library of :func:`compiled_texts` with an origin and flags in the cache; None if it is not there."""
     with suppress(OSError):
         return _compiled_before(name, cache_folder(), _stem(name, compiler, flags, [origin.encode()]))
     return None
 
 
 def flags_of_machine() -> tuple[str, ...]:
-    """:data:`FLAGS` for what runs on this machine alone, with wider vectors if it has them: results are the same."""
+    """Flags for code that runs on this machine alone: :data:`FLAGS`, with wider vectors if any; with equal results."""
     return (*FLAGS, *_wider_vectors())
 
 
@@ -158,12 +158,12 @@ def _wider_vectors() -> tuple[str, ...]:
 
 
 def _stem(name: str, compiler: str, flags: Sequence[str], contents: Sequence[bytes]) -> str:
-    """Beginning of the name of a library, by its compiler with its flags and the contents of its sources."""
+    """Prefix of the file name of a library, from its compiler, its flags and the contents of its sources."""
     return f"{name}-{content_hash(compiler_words(compiler), flags, contents)}"
 
 
 def _compiled_before(name: str, folder: Path, stem: str) -> Path | None:
-    """The library that an earlier compilation left in the cache, if any."""
+    """Find the library of an earlier compilation in the cache, if any."""
     kept = kept_file(folder, stem)
     if kept is not None:
         mark_used(kept)
@@ -172,13 +172,13 @@ def _compiled_before(name: str, folder: Path, stem: str) -> Path | None:
 
 
 def find_compiler(wanted: str | None = None) -> str:
-    """Command of a C compiler: the wanted one, else the command in CC, else the first command that is there.
+    """Find the command of a C compiler: the wanted one, else the command in CC, else the first existing command.
 
     Args:
         wanted: a program, or a command with options or a launcher before it, such as ``gcc -O1`` or ``ccache gcc``.
 
     Returns:
-        the command as a shell takes it, with the path of its program.
+        the command in shell syntax, with the path of its program.
 
     Raises:
         ExportError: there is none.
@@ -188,7 +188,7 @@ def find_compiler(wanted: str | None = None) -> str:
 
 @lru_cache(maxsize=16)
 def _found(asked: str, path: str | None) -> str:
-    """The command, looked for on a path of folders once in a process: every motion asks."""
+    """Find the command on a path of folders, once in a process, because every motion asks."""
     # What pip installs lies beside the interpreter, whose folder is on no path unless its environment is activated.
     folders = os.pathsep.join([path or os.defpath, str(Path(sys.executable).parent)])
     for candidate in [asked] if asked else COMPILERS:
@@ -207,7 +207,7 @@ def compiler_words(compiler: str, flags: Sequence[str] = ()) -> list[str]:
 
     Args:
         compiler: command, of :func:`find_compiler`.
-        flags: of ours; options of the command come after them, so that what the user asks for holds.
+        flags: flags of this package; options of the command follow, so that those of the user take precedence.
     """
     words = shlex.split(compiler)
     programs = [word.startswith("-") for word in [*words, "-"]].index(True)
@@ -229,7 +229,7 @@ def _compile(
     stem: str,
     progress: StageProgress | None,
 ) -> Path:
-    """Compile sources into a folder, under a name that begins with a stem and tells the content."""
+    """Compile sources into a folder, to a file whose name consists of a stem and a hash of the content."""
     name = stem.rpartition("-")[0]
     call = compiler_words(compiler, flags)
     with tempfile.TemporaryDirectory(prefix=SCRATCH, dir=folder) as scratch:
@@ -261,13 +261,13 @@ def _run(processes: Processes, command: list[str], made: Path, of: Path) -> None
     """Run a compiler.
 
     Args:
-        processes: among which it runs.
-        command: its words.
-        made: file that it has to write.
-        of: the sources that it is compiled from, for the sentence.
+        processes: group of processes to which it belongs.
+        command: words of the command.
+        made: file that the compiler has to write.
+        of: source file or folder, for the error message.
 
     Raises:
-        ExportError: it cannot be run, does not end, fails, or writes nothing.
+        ExportError: the compiler cannot be run, does not end, fails, or writes nothing.
     """
     program = command[0]
     try:
@@ -286,7 +286,7 @@ def _run(processes: Processes, command: list[str], made: Path, of: Path) -> None
 
 
 def _check_loads(compiler: str, library: Path) -> None:
-    """Refuse what a compiler made where it is no library of this machine.
+    """Refuse the result of a compiler that is no library for this machine.
 
     Raises:
         ExportError: the library cannot be loaded.
@@ -308,10 +308,10 @@ def _read(path: Path) -> bytes:
 
 
 class Processes:
-    """Programs that were started here and have not ended; they are stopped where the block of a ``with`` is left.
+    """Running programs of this process, which are stopped at the end of a ``with`` block.
 
     Args:
-        longest: time that each program has, s.
+        longest: time limit of each program, s.
     """
 
     def __init__(self, longest: float) -> None:
@@ -324,15 +324,15 @@ class Processes:
         """Run a program until it ends; several threads may do so at once.
 
         Args:
-            command: its words.
-            folder: in which it runs; None for the present one.
+            command: words of the command.
+            folder: folder in which the program runs; None for the present one.
 
         Returns:
-            its exit code and its text on standard error.
+            the exit code and the text on standard error.
 
         Raises:
-            OSError: it cannot be run.
-            TimeoutError: its time is over; it was stopped.
+            OSError: the program cannot be run.
+            TimeoutError: the program was stopped after its time limit.
         """
         with self._lock:
             if self._stopped:

@@ -1,8 +1,8 @@
-"""A key of the origin of texts in C, under which they are kept: it is known before they are written.
+"""Keys of texts in C by their origin, which are known before the texts are written.
 
-Models, scenes, options are records of numbers and words. The same records, read by the same sources with the same
-libraries, lead to the same texts. Other values have no key: a record or a model whose class comes from outside the
-package, since its mechanics are not known here, or an expression of CasADi.
+Models, scenes and options are records of numbers and words. Equal records, read by equal sources with equal libraries,
+lead to equal texts. Other values have no key: a record or a model whose class comes from outside the package, because
+its mechanics are not known here, or an expression of CasADi.
 """
 
 from __future__ import annotations
@@ -24,21 +24,21 @@ from cosserat_casadi.scene.records import Record
 PACKAGE = "cosserat_casadi"
 
 PLAIN = (type(None), bool, int, float, str, bytes)
-"""Classes of values that their own texts tell."""
+"""Classes of values that are identified by their text representation."""
 
 Tokens = tuple["str | Tokens", ...]
 """Words, and groups of words."""
 
 
 class NoDataError(Exception):
-    """A value that no text tells wholly."""
+    """A value without a complete text representation."""
 
 
 def key_of(*made_from: Any) -> str | None:
-    """A hash of values and of all else that texts depend on: the package's sources, CasADi, NumPy and the machine.
+    """Hash values and everything else on which texts depend: the package's sources, CasADi, NumPy and the machine.
 
     Returns:
-        None where a value is no data, or where the sources have changed since this process read them.
+        the key; None if a value is no data, or if the sources have changed since this process read them.
     """
     sources = hash_at_first_use()
     if sources is None:
@@ -54,15 +54,15 @@ def key_of(*made_from: Any) -> str | None:
 
 @cache
 def hash_at_first_use() -> str | None:
-    """The hash of the sources that this process runs: none that changes later is read."""
+    """Return the hash of the sources that this process runs, taken once."""
     return sources_hash()
 
 
 def _tokens(value: Any) -> Tokens:
-    """The name of the class of a value, and its content.
+    """Turn a value into the name of its class and its content.
 
     Raises:
-        NoDataError: the value, or one that it holds, is no data.
+        NoDataError: the value, or a value in it, is no data.
     """
     kind = type(value)
     if kind in PLAIN:
@@ -103,5 +103,5 @@ def _fields(record: Any) -> list[str]:
 
 
 def _is_of_package(named: Any) -> bool:
-    """Whether a class or a function is one of this package."""
+    """Whether a class or a function belongs to this package."""
     return str(named.__module__).partition(".")[0] == PACKAGE

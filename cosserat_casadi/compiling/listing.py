@@ -1,4 +1,4 @@
-"""A scalar function as a list of values, each computed once: what code of our own is written from."""
+"""A scalar function as a list of values, each computed once, from which this package writes its code."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ import casadi as ca
 from cosserat_casadi.compiling.called import Known, called_functions
 
 LANES = 4
-"""Numbers that are computed together: columns, intervals, states."""
+"""Number of columns, intervals or states that are computed together."""
 
 FEWEST = 3
 """Calls of one function from which on they are made together, four at a time."""
 
 BINARY = {ca.OP_ADD: "+", ca.OP_SUB: "-", ca.OP_MUL: "*", ca.OP_DIV: "/"}
-"""Operations that four lanes have, as C writes them."""
+"""Operations on four lanes, as operators in C."""
 
 SUMS = {ca.OP_ADD, ca.OP_SUB}
 """Operators that bind less tightly than products."""
@@ -32,17 +32,17 @@ FUNCTIONS = {
     ca.OP_COPYSIGN: "copysign", ca.OP_ERF: "erf", ca.OP_LOG1P: "log1p", ca.OP_EXPM1: "expm1", ca.OP_HYPOT: "hypot",
     ca.OP_ASINH: "asinh", ca.OP_ACOSH: "acosh", ca.OP_ATANH: "atanh",
 }  # fmt: skip
-"""Operations that single numbers have besides, as functions of the mathematical library."""
+"""Further operations on single numbers, as functions of the mathematical library."""
 
 CHOICES = {
     ca.OP_LT: "{0} < {1}", ca.OP_LE: "{0} <= {1}", ca.OP_EQ: "{0} == {1}", ca.OP_NE: "{0} != {1}",
     ca.OP_NOT: "!{0}", ca.OP_AND: "{0} && {1}", ca.OP_OR: "{0} || {1}", ca.OP_IF_ELSE_ZERO: "{0} ? {1} : 0",
     ca.OP_SIGN: "{0} < 0 ? -1 : {0} > 0 ? 1 : {0}",
 }  # fmt: skip
-"""Operations that compare and choose: distances from obstacles have some."""
+"""Comparisons and choices, which occur in distances from obstacles."""
 
 REWRITTEN = {ca.OP_NEG: (ca.OP_MUL, -1.0), ca.OP_TWICE: (ca.OP_MUL, 2.0), ca.OP_INV: (ca.OP_DIV, 1.0)}
-"""Operations with one operand as products or quotients of a constant."""
+"""Operations with one operand, as products or quotients with a constant."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class Read:
 
 @dataclass(frozen=True)
 class Computed:
-    """The result of an operation on other values, which are known by their numbers."""
+    """The result of an operation on other values, which are given by their numbers."""
 
     operation: int
     operands: tuple[int, ...]
@@ -117,7 +117,7 @@ NO_CALLS: Mapping[int, ShorterCall] = {}
 
 
 class UnknownOperationError(Exception):
-    """An operation has no form in this package's C."""
+    """Error of an operation that this package cannot write in C."""
 
 
 class Listing:
@@ -127,12 +127,12 @@ class Listing:
         function: the listed function.
         values: the values; an operand comes before the operation that takes it.
         calls: calls of other functions.
-        outputs: for each output, number of the value of each stored entry that is computed.
+        outputs: for each output, numbers of the values of its computed stored entries.
 
     Args:
         function: the function.
-        apart: whether every use of a constant is a separate value, and every operation is listed as CasADi has it:
-            values of functions that differ in constants alone are then equal but for the constants.
+        apart: whether every use of a constant is a separate value, and every operation is listed as in CasADi. The
+            lists of functions that differ in constants alone are then equal up to the constants.
     """
 
     def __init__(self, function: ca.Function, *, apart: bool = False) -> None:
@@ -150,7 +150,7 @@ class Listing:
             self._add(k, code)
 
     def operands(self, number: int) -> Sequence[int]:
-        """Numbers of the values that one is computed from."""
+        """Numbers of the values from which a value is computed."""
         value = self.values[number]
         if isinstance(value, Computed):
             return value.operands
@@ -160,7 +160,7 @@ class Listing:
 
     @property
     def has_fours(self) -> bool:
-        """Whether all operations have a form in fours."""
+        """Whether all operations have a form for four numbers at a time."""
         return all(value.operation in BINARY for value in self.values if isinstance(value, Computed))
 
     def wanted(self) -> Iterator[int]:
@@ -169,7 +169,7 @@ class Listing:
             yield from output.values()
 
     def names_of_callees(self, prefix: str) -> dict[int, str]:
-        """A name for each function that is called, by its hash: the function's, with a number where that is taken."""
+        """Names of all called functions by their hashes: the function's name, with a number if it is taken."""
         functions = {hash(call.function): call.function for call in self.calls}
         names: dict[int, str] = {}
         for function_hash, function in functions.items():
@@ -211,7 +211,7 @@ class Listing:
         return expressions
 
     def entries(self, output: int, expressions: Mapping[int, ca.SX]) -> list[ca.SX]:
-        """Stored entries of an output, from expressions of the values that it has; zeros for all other entries."""
+        """Stored entries of an output from the expressions of its values, with zeros for all other entries."""
         entries = [ca.SX(0.0)] * self.function.nnz_out(output)
         for entry, number in self.outputs[output].items():
             entries[entry] = expressions[number]
@@ -229,7 +229,7 @@ class Listing:
         return [ca.SX(pattern, ca.vertcat(*self.entries(i, expressions))) for i, pattern in enumerate(patterns)]
 
     def _add(self, k: int, code: int) -> None:
-        """Append the value, or the values, of the k-th instruction, which has this code."""
+        """Append the value, or the values, of the k-th instruction, with this operation code."""
         inputs = self.function.instruction_input(k)
         outputs = self.function.instruction_output(k)
         if code == ca.OP_OUTPUT:
@@ -245,7 +245,7 @@ class Listing:
             self._variables[outputs[0]] = self._number(self._computed(code, operands))
 
     def _operand(self, variable: int) -> int:
-        """The number of the value that is in a variable."""
+        """Number of the value in a variable."""
         value = self._variables[variable]
         return self._number(value) if isinstance(value, Constant) else value
 
@@ -263,7 +263,7 @@ class Listing:
         self._variables.update(zip(outputs, results, strict=True))
 
     def _number(self, value: Value) -> int:
-        """The number of a value, which is computed once."""
+        """Number of a value; equal values have one number."""
         known = self._known.get(value)
         if known is not None and (not self._apart or isinstance(value, Read)):
             return known

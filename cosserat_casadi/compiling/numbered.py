@@ -1,4 +1,4 @@
-"""Records of a function as steps on numbered entries: values, steps, and the origins of the numbers.
+"""Representation of a function by steps on numbered entries: values, steps, and the origins of the numbers.
 
 Every entry that is computed has a number, and a matrix lists the numbers of its entries.
 """
@@ -15,16 +15,16 @@ import numpy.typing as npt
 Numbers = npt.NDArray[np.int64]
 
 SMALL = 400
-"""Instructions up to which a step is written without a loop."""
+"""Most instructions of a step that is written without a loop."""
 
 
 @dataclass(frozen=True, eq=False)
 class Value:
-    """A matrix as entries that were computed before.
+    """A matrix, given by the numbers of its entries.
 
     Attributes:
-        pattern: sparsity.
-        numbers: of the stored entries; 0 for a zero.
+        pattern: sparsity of the matrix.
+        numbers: numbers of the stored entries; 0 for a zero.
     """
 
     pattern: ca.Sparsity
@@ -32,7 +32,7 @@ class Value:
 
     @property
     def key(self) -> tuple[object, ...]:
-        """Key that equal matrices share."""
+        """Key of all equal matrices."""
         return tuple(self.pattern.compress()), self.numbers.tobytes()
 
     @property
@@ -44,20 +44,20 @@ class Value:
         return _of_matrix(self._matrix.T)
 
     def projected(self, pattern: ca.Sparsity) -> Value:
-        """The entries of another pattern."""
+        """The matrix with another sparsity pattern."""
         if pattern == self.pattern:
             return self
         return _of_matrix(ca.project(self._matrix, pattern))
 
     @property
     def dense(self) -> Value:
-        """All entries."""
+        """The matrix with all entries stored."""
         if self.pattern.is_dense():
             return self
         return self.projected(ca.Sparsity.dense(*self.pattern.shape))
 
     def part(self, rows: Numbers, columns: Numbers) -> Value:
-        """The entries of some rows and columns, as a dense matrix."""
+        """Some rows and columns, as a dense matrix."""
         if not self.pattern.is_dense():
             return _of_matrix(ca.densify(self._matrix[rows.tolist(), columns.tolist()]))
         entries = self.numbers.reshape(self.pattern.shape, order="F")[np.ix_(rows, columns)]
@@ -74,21 +74,21 @@ def _of_matrix(matrix: ca.DM) -> Value:
 
 
 def column(numbers: Numbers) -> Value:
-    """A column of these entries."""
+    """Make a column of these entries."""
     return Value(ca.Sparsity.dense(len(numbers)), numbers)
 
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """A computation.
+    """One computation of a program.
 
     Attributes:
-        function: maps the operands to the results.
-        operands: its arguments.
-        results: its results, each with numbers one after the other.
-        instructions: length without a loop.
-        called: whether the function is called as it is, and not written out.
-        operation: CasADi's number of the operation on each entry; None for any other computation.
+        function: function of the operands ↦ results.
+        operands: arguments of the step.
+        results: results of the step, each with consecutive numbers.
+        instructions: number of instructions without a loop.
+        called: whether the function is called, and not inlined.
+        operation: CasADi's number of the entrywise operation; None for any other computation.
     """
 
     function: ca.Function
@@ -104,9 +104,9 @@ class Step:
 
 
 class Origins:
-    """Entries that numbers stand for: of arguments, constants and results of steps, one after another.
+    """Meaning of the numbers: entries of things, which are arguments, constants and results of steps, in order.
 
-    Number 0 is a zero, and the first of these things.
+    Number 0 is a zero, the first thing.
     """
 
     def __init__(self) -> None:
@@ -120,7 +120,7 @@ class Origins:
         self.add(ca.Sparsity.dense(1), [0.0])
 
     def add(self, pattern: ca.Sparsity, constants: list[float] | None = None) -> Value:
-        """Number the entries of one more thing, of constants with their values."""
+        """Number the entries of a further thing; constants are given with their values."""
         thing = len(self.sizes)
         end = self._count + pattern.nnz()
         if thing == len(self._first):
@@ -139,7 +139,7 @@ class Origins:
 
     @property
     def count(self) -> int:
-        """How many numbers there are."""
+        """Count of numbers."""
         return self._count
 
     def is_constant(self, numbers: Numbers) -> npt.NDArray[np.bool_]:
@@ -152,15 +152,15 @@ class Origins:
         return np.arange(first, first + self.sizes[thing])
 
     def owners(self, numbers: Numbers) -> Numbers:
-        """The thing that each number is an entry of; 0 for all constants."""
+        """Index of the thing to which each number belongs; 0 for all constants."""
         return np.asarray(self._owners[numbers])
 
     def holders(self, numbers: Numbers) -> list[int]:
-        """The things that hold these entries, constants left out."""
+        """Indices of the things that contain these entries, without constants."""
         return sorted(set(self.owners(numbers).tolist()) - {0})
 
     def is_whole(self, numbers: Numbers) -> bool:
-        """Whether numbers are all entries of one thing in their order, or constants."""
+        """Whether numbers are all entries of one thing in order, or constants."""
         if len(numbers) == 0:
             return True
         owner = int(self._owners[numbers[0]])
@@ -185,9 +185,9 @@ class Argument:
     """An argument of a program.
 
     Attributes:
-        name: its name.
-        pattern: sparsity.
-        pieces: its entries in columns that lie one after the other, each numbered as one thing.
+        name: name of the argument.
+        pattern: sparsity of the argument.
+        pieces: consecutive columns with its entries, each numbered as one thing.
     """
 
     name: str
@@ -200,11 +200,11 @@ class Program:
     """A function as steps.
 
     Attributes:
-        name: its name.
-        origins: what the numbers stand for.
-        arguments: its arguments.
-        steps: its computations in their order.
-        results: its results by name.
+        name: name of the program.
+        origins: meaning of the numbers.
+        arguments: arguments of the program.
+        steps: computations in their order.
+        results: results by name.
     """
 
     name: str
@@ -215,7 +215,7 @@ class Program:
 
 
 def function_of(program: Program) -> ca.Function:
-    """A program as a function of CasADi, whose instructions bring entries into order before each step."""
+    """Convert a program to a CasADi function, whose instructions arrange entries before each step."""
     columns: dict[int, ca.MX] = {}
     origins = program.origins
 
@@ -246,7 +246,7 @@ def function_of(program: Program) -> ca.Function:
 
 
 def _gathered(origins: Origins, columns: dict[int, ca.MX], numbers: Numbers) -> ca.MX:
-    """A column of entries, which are taken out of the columns of things."""
+    """Gather entries from the columns of things in one column."""
     if len(numbers) == 0:
         return ca.MX(0, 1)
     owners = origins.owners(numbers)

@@ -1,8 +1,8 @@
-"""Functions as files in C, for a library or as what ``casadi.external`` loads.
+"""C files of functions, for a library or for ``casadi.external``.
 
 Functions of scalars are printed by scalars_in_c.py, functions of matrices by program_in_c.py. CasADi prints a function
-with an instruction that neither knows: the literal linear system of a rotation, which is solved with pivoting, and the
-contact of rods, which is computed where they are near.
+with an instruction that neither supports: the literal linear system of a rotation, which is solved with pivoting, and
+the contact of rods, which is computed only where they are near.
 """
 
 from __future__ import annotations
@@ -68,30 +68,30 @@ END = """#ifdef __cplusplus
 } /* extern "C" */
 #endif
 """
-"""How every file ends, files of CasADi too."""
+"""Last lines of every file, including files of CasADi."""
 
 GENERATOR = {"with_header": True}
 
 HELPER = re.compile(r"^(?:void|casadi_real|casadi_int|int) casadi_\w+\(", re.MULTILINE)
-"""Beginning of a function of CasADi's runtime, which is no kernel."""
+"""Pattern of the first line of a function of CasADi's runtime, which is no kernel."""
 
 PROTOTYPE = re.compile(r"^(?:void|int|const \w+ ?\*|casadi_int|casadi_real) ?(?!casadi_)\w+\([^{;]*\);", re.MULTILINE)
-"""Declaration of a kernel in CasADi's header."""
+"""Pattern of the declaration of a kernel in CasADi's header."""
 
 
 def external_sources(functions: Sequence[ca.Function], stem: str, integer: str) -> dict[str, str]:
-    """Source and header of functions that ``casadi.external`` loads, by file name.
+    """Write source and header of functions that ``casadi.external`` loads, by file name.
 
     Args:
         functions: the functions.
-        stem: of the file names.
-        integer: type of whole numbers in C.
+        stem: stem of the file names.
+        integer: type of integers in C.
     """
     return printed_files(functions, stem, integer, QUIET + OF_EXTERNALS, described=True)
 
 
 def in_c(kernel: Kernel) -> Kernel:
-    """A kernel as printed here; the function itself where CasADi has to print it."""
+    """Print a kernel; return the function itself if CasADi has to print it."""
     if not isinstance(kernel, ca.Function) or chooses(kernel):
         return kernel
     try:
@@ -111,15 +111,15 @@ def printed_files(
     described: bool = False,
     on_device: bool = False,
 ) -> dict[str, str]:
-    """Source and header, with what the source includes.
+    """Write source and header, and the files that the source includes.
 
     Args:
         kernels: the kernels.
-        stem: of the file names.
-        integer: type of whole numbers in C.
+        stem: stem of the file names.
+        integer: type of integers in C.
         prologue: beginning of the source.
-        described: whether functions follow that tell ``casadi.external`` of arguments and results.
-        on_device: whether compilers for GPUs are to take them too.
+        described: whether functions follow that describe arguments and results to ``casadi.external``.
+        on_device: whether compilers for GPUs must accept them too.
     """
     written = [in_c(kernel) for kernel in kernels]
     own = [kernel for kernel in written if isinstance(kernel, PrintedKernel)]
@@ -142,7 +142,7 @@ def printed_files(
 
 
 def _description(kernel: PrintedKernel) -> str:
-    """Functions in C that tell ``casadi.external`` of arguments and results."""
+    """Write functions in C that describe arguments and results to ``casadi.external``."""
     function = kernel.signature
     arguments = [function.sparsity_in(i) for i in range(function.n_in())]
     results = [function.sparsity_out(i) for i in range(function.n_out())]
@@ -160,7 +160,7 @@ def _description(kernel: PrintedKernel) -> str:
 
 
 def _patterns(side: str, patterns: Sequence[ca.Sparsity]) -> str:
-    """Constant arrays of sparsity patterns, and one of pointers to them."""
+    """Write constant arrays of sparsity patterns, and one of pointers to them."""
     tables = []
     for i, pattern in enumerate(patterns):
         numbers = [*pattern.shape, 1] if pattern.is_dense() else [*pattern.shape, *pattern.colind(), *pattern.row()]
@@ -174,10 +174,10 @@ def _listed(texts: Iterable[str]) -> str:
 
 
 def _by_casadi(functions: Sequence[ca.Function], stem: str, integer: str) -> dict[str, str]:
-    """Source and header as CasADi writes them.
+    """Let CasADi write source and header.
 
     Raises:
-        WriteError: the disk was full. CasADi does not look whether its files are written, and leaves them cut off.
+        WriteError: the disk was full. CasADi does not check its writes, and leaves truncated files.
     """
     generator = ca.CodeGenerator(stem, {**GENERATOR, "casadi_int": integer})
     for function in functions:

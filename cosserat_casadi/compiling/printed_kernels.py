@@ -1,4 +1,4 @@
-"""Kernels as scalars_in_c.py and program_in_c.py print them, as parts of a source and its header."""
+"""Printed kernels of scalars_in_c.py and program_in_c.py, as parts of a source and its header."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ static void MADE({name})(const casadi_real *given, casadi_real *made, int turns)
     {call}
 }}
 """
-"""A function that kernels call, and the loop over its calls."""
+"""Template of a function that kernels call, and of the loop over its calls."""
 
 CALL_OF_FOUR = "EVERY_LANE(MADE({name}_turn)(given + lane, made + lane))"
 CALL_OF_ONE = "MADE({name}_turn)(given, made);"
@@ -39,7 +39,7 @@ CHOICE = """static void MADE({name})({parameters}) {{
   IN_FOURS({name}, ({arguments}));
 }}
 """
-"""A function in fours for the width of vectors that the processor has."""
+"""Template of a function for four numbers at a time, by the width of the processor's vectors."""
 
 PARAMETERS_OF_CALLEE = {"given": "const casadi_real *", "made": "casadi_real *", "turns": "int "}
 PARAMETERS_OF_LOOP = {"w": "casadi_real *"}
@@ -50,11 +50,11 @@ PARAMETERS_OF_COLUMNS = {
     "passed": "casadi_real *",
     "groups": "int ",
 }
-"""Types of the parameters of functions in fours by name."""
+"""Types of the parameters of functions for four numbers at a time, by name."""
 
 PART_OF_COLUMNS = """static void MADE({name}_{part})(const casadi_real *w, const casadi_real *turns,
     casadi_real *columns, casadi_real *passed){body}"""
-"""A part of what computes four columns."""
+"""Template of a part of the code for four columns."""
 
 COLUMNS = """static void MADE({name})(const casadi_real *w, const casadi_real *turns,
     casadi_real *columns, casadi_real *passed, int groups) {{
@@ -64,28 +64,28 @@ COLUMNS = """static void MADE({name})(const casadi_real *w, const casadi_real *t
   }}
 }}
 """
-"""All columns, four after four."""
+"""Template of the loop over all columns, four at a time."""
 
 CALL_OF_COLUMNS = "    EVERY_LANE(MADE({name}_{part})(w, turns + lane, columns + lane, passed + lane))"
 
 INTEGERS = """#undef INTEGERS
 #define INTEGERS(first) ({stem}_integers + (first))
 """
-"""How kernels read tables of whole numbers."""
+"""Macro by which kernels read tables of integers."""
 
 NUMBERS = """#undef C
 #define C {stem}_numbers
 """
-"""How functions read constants that several functions have."""
+"""Macro by which functions read constants that several functions share."""
 
 NUMBER = re.compile(r"NUMBER\(([^()]+)\)")
-"""A constant in the text of a function until it is known whether it is there once."""
+"""Pattern of a constant in the text of a function before it is known whether it occurs once."""
 
 LEFT_OUT = (
     '"no-tree-dse", "no-dse", "no-tree-dominator-opts", "no-tree-pta", \\\n'
     '    "no-tree-sink", "no-tree-sra", "no-tree-slsr", "no-tree-bit-ccp", "no-tree-ch"'
 )
-"""Passes of GCC that find nothing in straight-line code, and take a tenth of its time."""
+"""Passes of GCC that find nothing in straight-line code, but take a tenth of its time."""
 
 
 @dataclass(frozen=True)
@@ -93,12 +93,12 @@ class ColumnForm:
     """A Jacobian, or some entries of one, by the columns of one rod.
 
     Attributes:
-        function: (arguments, …, columns, turns) ↦ (results, …, column). The column follows from the turns,
-            and the results from the matrix of all columns, one row of it after the other.
-        turns: constant turns of all columns, shape (entries, stride), with zeros behind the last one.
-        rows: rows of the matrix of columns.
-        turns_behind: None, or number of constants behind which the turns stand in the argument before the columns,
-            as :func:`in_groups` orders them; they may then differ from call to call.
+        function: (arguments, …, columns, turns) ↦ (results, …, column). The column follows from the turns, and the
+            results from the matrix of all columns, which is stored by rows.
+        turns: constant turns of all columns, shape (entries, stride), padded with zeros after the last one.
+        rows: number of rows of the matrix of columns.
+        turns_behind: None, or the number of constants that precede the turns in the argument before the columns, in
+            the order of :func:`in_groups`; the turns may then differ from call to call.
     """
 
     function: ca.Function
@@ -108,31 +108,31 @@ class ColumnForm:
 
     @property
     def stride(self) -> int:
-        """Columns of that matrix, a multiple of LANES."""
+        """Number of columns of the matrix, a multiple of LANES."""
         return int(self.turns.shape[1])
 
     @property
     def columns_argument(self) -> int:
-        """Number of the argument with the matrix of columns; the next one has the turns of one column."""
+        """Index of the argument with the matrix of columns; the next one contains the turns of one column."""
         number: int = self.function.n_in() - 2
         return number
 
 
 def in_groups(turns: FloatArray) -> FloatArray:
-    """The turns of LANES columns after those of the LANES before, one entry of the group after the other."""
+    """Order turns by groups of LANES columns, and within a group by entries."""
     entries, stride = turns.shape
     return turns.reshape(entries, stride // LANES, LANES).transpose(1, 0, 2).ravel()
 
 
 @dataclass(frozen=True)
 class Callee:
-    """A function that kernels call for intervals.
+    """A function that kernels call for intervals of a rod.
 
     Attributes:
-        body: in C.
-        width: how many intervals it computes at once.
-        operands: numbers that it reads for one interval.
-        results: numbers that it writes for one interval.
+        body: body in C.
+        width: number of intervals that it computes at once.
+        operands: count of numbers that it reads for one interval.
+        results: count of numbers that it writes for one interval.
     """
 
     body: str
@@ -141,7 +141,7 @@ class Callee:
     results: int
 
     def text(self, name: str) -> str:
-        """The function in C, under a name, with a loop over its calls."""
+        """Write the function in C with a name, and a loop over its calls."""
         call = CALL_OF_ONE if self.width == 1 else CALL_OF_FOUR
         given, made = self.width * self.operands, self.width * self.results
         return CALLEE.format(name=name, body=self.body, given=given, made=made, call=call.format(name=name))
@@ -172,15 +172,15 @@ class ConstantTable:
     """A constant array.
 
     Attributes:
-        type: of its numbers in C.
-        numbers: these in C.
+        type: type of its numbers in C.
+        numbers: the numbers in C.
     """
 
     type: str
     numbers: tuple[str, ...]
 
     def text(self, name: str) -> str:
-        """The array in C, under a name; of no numbers one that is not read, since C has no empty arrays."""
+        """Write the array in C with a name; an empty one has an unused number, since C has no empty arrays."""
         return _array(self.type, name, self.numbers or ("0",))
 
 
@@ -190,17 +190,17 @@ class PrintedKernel:
 
     Attributes:
         signature: a function with its name, arguments and results.
-        tables: constant arrays in C, by name: the type of their numbers, and these as text. Kernels share equal ones.
-        body: functions in C, the kernel itself last; their names stand in ``MADE()``.
-        callees: functions that these call by the name of the kernel and a word, by the word.
-        reals: size of the array that it works in.
+        tables: constant arrays in C by name: type of the numbers, and numbers as text. Kernels share equal ones.
+        body: functions in C, the kernel itself last; their names are written as ``MADE()``.
+        callees: functions that these call, by a word; their names consist of that of the kernel and the word.
+        reals: size of its work array.
         statements: number of its statements.
-        loops: functions that compute entries four at a time, by name: they are compiled for each width of vectors.
-        columns: function that computes columns four at a time, by name, for each width too.
-        is_program: whether it is a function of matrices, in loops.
+        loops: functions that compute four entries at a time, by name, compiled for each width of vectors.
+        columns: function that computes four columns at a time, by name, also for each width.
+        is_program: whether it is a function of matrices, with loops.
         products: products of matrices whose routines it calls.
         kernels: kernels that it calls.
-        places: of its results in the array, where it leaves them there for the kernels that call it.
+        places: places of its results in the work array, if it leaves them there for the kernels that call it.
     """
 
     signature: ca.Function
@@ -226,7 +226,7 @@ class PrintedKernel:
         return self.statements
 
     def prototype(self, qualifier: str = "") -> str:
-        """Declaration of the kernel, behind a qualifier, and the sizes of its arrays."""
+        """Write the declaration of the kernel with a qualifier, and the sizes of its arrays."""
         arguments = self.signature.n_in()
         results = self.signature.n_out()
         sizes = {"arguments": arguments, "results": results, "reals": self.reals}
@@ -234,18 +234,18 @@ class PrintedKernel:
 
 
 Kernel: TypeAlias = ca.Function | PrintedKernel
-"""A function that is not printed yet, or the kernel that it became."""
+"""A function that is not printed yet, or the printed kernel."""
 
 
 @dataclass(frozen=True)
 class PrintedSources:
-    """Kernels as text.
+    """Text of kernels.
 
     Attributes:
         source: text for the source.
-        functions: the functions alone, with all constants in place, of kernels that make no calls four at a time.
+        functions: functions of kernels that make no calls four at a time, with constants inlined.
         prototypes: text for the header.
-        included: files by name that the source includes.
+        included: files that the source includes, by name.
     """
 
     source: str
@@ -255,7 +255,7 @@ class PrintedSources:
 
 
 def printed_sources(kernels: Sequence[PrintedKernel], stem: str, qualifier: str = "") -> PrintedSources:
-    """Kernels in C, for any processor and for the wider vectors of newer ones; prototypes behind a qualifier."""
+    """Write kernels in C, for any processor and for the wider vectors of newer ones, with a qualifier of prototypes."""
     public = kernels
     kernels = _with_called(kernels)
     callees = _callees(kernels, stem)
@@ -300,30 +300,30 @@ def printed_sources(kernels: Sequence[PrintedKernel], stem: str, qualifier: str 
 
 
 def _shared_numbers(texts: Iterable[str]) -> dict[str, str]:
-    """Where constants that stand in texts of functions several times are in one array, by their text."""
+    """Collect constants that occur several times in texts of functions; return their place in one array by text."""
     counts = Counter(number for text in texts for number in NUMBER.findall(text))
     several = [number for number, count in counts.items() if count > 1]
     return {number: f"C[{i}]" for i, number in enumerate(several)}
 
 
 def _with_numbers(text: str, shared: Mapping[str, str]) -> str:
-    """Text with constants in place, or read from the array that shared ones are in."""
+    """Insert constants in a text, shared ones as reads from their array."""
     return NUMBER.sub(lambda match: shared.get(match[1]) or _in_place(match[1]), text)
 
 
 def _in_place(number: str) -> str:
-    """A constant among operations."""
+    """Write a constant as an operand."""
     return f"({number})" if number.startswith("-") else number
 
 
 def _choice(name: str, parameters: Mapping[str, str]) -> str:
-    """A function in fours under its name, for the processor at hand."""
+    """Write a function that selects the version for four numbers at a time that suits the processor."""
     declared = ", ".join(kind + parameter for parameter, kind in parameters.items())
     return CHOICE.format(name=name, parameters=declared, arguments=", ".join(parameters))
 
 
 def _with_called(kernels: Sequence[PrintedKernel]) -> list[PrintedKernel]:
-    """Kernels with the kernels that they call in front, each once."""
+    """List kernels after the kernels that they call, each once."""
     every: dict[str, PrintedKernel] = {}
     for kernel in kernels:
         for one in (*_with_called(kernel.kernels), kernel):
@@ -344,7 +344,7 @@ def _callees(kernels: Sequence[PrintedKernel], stem: str) -> dict[Callee | Place
 
 
 def _tables(kernels: Sequence[PrintedKernel], stem: str) -> dict[ConstantTable, str]:
-    """Constant arrays of kernels as they are read in C: one for all that it begins with, one of all whole numbers."""
+    """Name the constant arrays of kernels; arrays that begin alike share the longest, integers share one array."""
     name_of: dict[ConstantTable, str] = {}
     integers = 0
     every = list(dict.fromkeys(table for kernel in kernels for table in kernel.tables.values()))
@@ -359,7 +359,7 @@ def _tables(kernels: Sequence[PrintedKernel], stem: str) -> dict[ConstantTable, 
 
 
 def _longest_with_each(tables: Sequence[ConstantTable]) -> dict[ConstantTable, ConstantTable]:
-    """The longest constant array that begins with each array; for an array of whole numbers the array itself."""
+    """Longest constant array that begins with each array; for an array of integers the array itself."""
     by_first: dict[tuple[str, ...], list[ConstantTable]] = defaultdict(list)
     longest = {}
     for table in sorted(tables, key=lambda table: -len(table.numbers)):
@@ -372,7 +372,7 @@ def _longest_with_each(tables: Sequence[ConstantTable]) -> dict[ConstantTable, C
 
 
 def _tables_in_c(name_of: Mapping[ConstantTable, str], stem: str) -> str:
-    """The constant arrays in C, from the names by which they are read."""
+    """Write the constant arrays in C, from the names by which they are read."""
     # Of arrays under one name the longest comes last.
     by_length = sorted(name_of, key=lambda table: len(table.numbers))
     longest = {name_of[table]: table for table in by_length if table.type != "int"}
@@ -384,7 +384,7 @@ def _tables_in_c(name_of: Mapping[ConstantTable, str], stem: str) -> str:
 
 
 def _array(kind: str, name: str, numbers: Sequence[str]) -> str:
-    """A constant array in C."""
+    """Write a constant array in C."""
     lines = textwrap.fill(", ".join(numbers), 119, initial_indent=" ", subsequent_indent=" ").replace(", ", ",")
     return f"static const {kind} {name}[{len(numbers)}] = {{\n{lines}}};\n"
 
@@ -392,7 +392,7 @@ def _array(kind: str, name: str, numbers: Sequence[str]) -> str:
 def _with_names(
     kernel: PrintedKernel, text: str, callees: Mapping[Callee | PlacedCallee, str], tables: Mapping[ConstantTable, str]
 ) -> str:
-    """Text of a kernel, with the names that functions and constant arrays have for all kernels."""
+    """Insert the common names of functions and constant arrays in the text of a kernel."""
     for word, callee in kernel.callees.items():
         text = text.replace(f"MADE({kernel.name()}_{word})", f"MADE({callees[callee]})")
     return re.sub(r"TABLE\((\w+)\)", lambda match: tables[kernel.tables[match[1]]], text)

@@ -1,8 +1,8 @@
 """Routines in C for products of matrices, one for each number of rows.
 
-Some rows of a column stay in registers until all their products are summed, four in each register where the processor
-can. On x86 a routine is made twice, as functions in fours are (templates/fours.c.in): the wider one is taken where the
-processor has it. It begins at a line of the cache: a solve took an eighth longer at one of four places of its loops.
+Some rows of a column stay in registers until all their products are summed, four in each register if the processor can.
+On x86 a routine is compiled twice, like functions for four numbers (templates/fours.c.in), and runs with the widest
+vectors of the processor. It is aligned to a cache line: with one of four alignments a solve took an eighth longer.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from itertools import pairwise
 import casadi as ca
 
 ROWS_AT_ONCE = 16
-"""Most rows that are summed together: sixteen doubles are eight registers of two, the factors fill some of the rest."""
+"""Most rows that are summed together: sixteen doubles fill eight registers of two; factors need some of the others."""
 
 TOGETHER_IN_REGISTER = 4
-"""Doubles in one of the widest registers: bunches are multiples of it, but for the last."""
+"""Number of doubles in one of the widest registers; bunches except the last are multiples of it."""
 
 TWICE = """#if defined(__GNUC__) && defined(__x86_64__) && !defined(__AVX2__) && !defined(FOURS_ONCE) && \\
     !defined(FOURS_ONE_BY_ONE)
@@ -36,7 +36,7 @@ TWICE = """#if defined(__GNUC__) && defined(__x86_64__) && !defined(__AVX2__) &&
 #define SUMS static void
 #endif
 """
-"""Macros that make a routine of its sums, for any processor and for the wider vectors of newer processors."""
+"""Macros that define a routine by its sums, for any processor and for the wider vectors of newer ones."""
 
 SPARSE = """SUMS product_sparse{alone}_{rows}_sums(const casadi_real* x,
     const casadi_real* y, const int* groups, int count, casadi_real* z) {{
@@ -81,10 +81,10 @@ class Product:
     """A product X Y of a dense matrix X.
 
     Attributes:
-        rows: of X.
-        dense: whether Y is dense; else it is stored column by column, with a table of its entries
+        rows: number of rows of X.
+        dense: whether Y is dense; else it is stored by columns, with a table of its entries
             (:func:`column_groups`).
-        alone: whether it is the result itself; else it is added to the numbers of the result.
+        alone: whether the product is the result; else it is added to the result.
     """
 
     rows: int
@@ -93,13 +93,13 @@ class Product:
 
     @property
     def name(self) -> str:
-        """Name in C."""
+        """Name of the routine in C."""
         kind = "dense" if self.dense else "sparse"
         return f"product_{kind}{'_alone' if self.alone else ''}_{self.rows}"
 
     @property
     def text(self) -> str:
-        """The routine."""
+        """Text of the routine."""
         column = "k" if self.dense else "row[k]"
         alone = "_alone" if self.alone else ""
         sums = _sums(self.rows, column, self.alone)
@@ -107,16 +107,16 @@ class Product:
 
 
 def product_routines(products: Iterable[Product]) -> str:
-    """The routines of these products; nothing where there are none."""
+    """Write the routines of these products; an empty string without products."""
     wanted = sorted(set(products))
     return TWICE + "".join(product.text for product in wanted) if wanted else ""
 
 
 def column_groups(pattern: ca.Sparsity) -> list[list[int]]:
-    """Columns of a sparse matrix in groups that follow on each other, as the routines of products read them.
+    """Group consecutive columns of a sparse matrix, in the form that the routines of products read.
 
-    Each group is the number of entries of a column, the number of columns, how many rows down each column has its
-    entries from the one before, and the rows of the first column.
+    Each group consists of the number of entries of a column, the number of columns, the shift of the entries, in rows,
+    from one column to the next, and the rows of the first column.
     """
     rows = pattern.row()
     groups: list[list[int]] = []
@@ -136,12 +136,12 @@ def column_groups(pattern: ca.Sparsity) -> list[list[int]]:
 
 
 def _sums(rows: int, column: str, alone: bool) -> str:
-    """The sums of the rows of one column of the result, in bunches of one size and a smaller last one.
+    """Write the sums of the rows of one column of the result, in bunches of one size and a smaller last one.
 
     Args:
-        rows: their number.
-        column: the column of x that meets y[k].
-        alone: whether they begin at zero; else they are added to z.
+        rows: number of rows.
+        column: the column of x that is multiplied by y[k].
+        alone: whether the sums begin at zero; else they are added to z.
     """
     bunches = -(-rows // ROWS_AT_ONCE)
     in_each = -(-rows // bunches)

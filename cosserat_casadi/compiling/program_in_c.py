@@ -1,10 +1,10 @@
 """A program (numbered.py) as C: loops over tables, products of matrices, and functions of intervals four at a time.
 
 A kernel works in an array ``w``. Its first number is zero; every argument and every result of a step has a place in it,
-which later results take over. A step reads its operands where they lie; entries that lie apart are gathered before, by
-a table. Operations on as many entries, such as entries of the sections of a rod, are one loop, whose turns keep in
-variables what only they read. Small steps are written together without loops. Calls of one function that do not wait
-for each other are made four at a time.
+which later results may reuse. A step reads its operands in place; scattered entries are gathered first, by a table.
+Operations on equal numbers of entries, such as those of the sections of a rod, are one loop, whose turns keep values
+that only they read in variables. Small steps are written together without loops. Independent calls of one function are
+made four at a time.
 """
 
 from __future__ import annotations
@@ -36,13 +36,13 @@ from cosserat_casadi.compiling.statements import (
 from cosserat_casadi.compiling.steps import program_of
 
 LONGEST_BUNDLE = 3000
-"""Instructions of small steps that are written together at the most."""
+"""Most instructions of small steps that are written together."""
 
 FEWEST_TURNS = 5
-"""Entries from which on an operation on each entry is part of a loop."""
+"""Least number of entries of an entrywise operation that is written as a loop."""
 
 LONGEST_PRODUCT_WITHOUT_LOOP = 40
-"""Instructions up to which a product of matrices is written without a loop."""
+"""Most instructions of a product of matrices that is written without a loop."""
 
 LOOP_IN_FOURS = """static void MADE({name})(casadi_real *w) {{
   FOR_FOURS(i, {count}) {{
@@ -50,7 +50,7 @@ LOOP_IN_FOURS = """static void MADE({name})(casadi_real *w) {{
   }}
 }}
 """
-"""A loop over entries, four at a time: the last four may compute some once more."""
+"""Template of a loop over entries, four at a time; the last four may compute some entries again."""
 
 LOOP = """static void MADE({name})(casadi_real *w) {{
   int i;
@@ -59,14 +59,14 @@ LOOP = """static void MADE({name})(casadi_real *w) {{
   }}
 }}
 """
-"""A loop over entries, one entry at a time: not all its operations have a form in fours."""
+"""Template of a loop over entries, one at a time, if some operation has no form for four numbers."""
 
 UNUSED = -1
-"""Place of an entry that has none yet."""
+"""Place of an entry without a place."""
 
 
 class UnitKind(Enum):
-    """Pieces of C that steps become."""
+    """Kinds of pieces of C for steps."""
 
     STRAIGHT = "small steps without a loop"
     LOOP = "operations on as many entries, in one loop"
@@ -76,10 +76,10 @@ class UnitKind(Enum):
 
 @dataclass
 class Unit:
-    """Steps that become one piece of C.
+    """Steps that are written as one piece of C.
 
     Attributes:
-        kind: which.
+        kind: kind of the piece.
         steps: the steps.
     """
 
@@ -93,14 +93,14 @@ class Unit:
 
 
 class RoomOfKernel:
-    """The array that a kernel works in: places that are free again are taken before the array grows."""
+    """The work array of a kernel, in which free places are reused before the array grows."""
 
     def __init__(self, size: int) -> None:
         self.size = size
         self._free: list[tuple[int, int]] = []
 
     def take(self, count: int) -> int:
-        """The first of ``count`` neighbouring places."""
+        """Reserve ``count`` consecutive places; return the first."""
         for k, (first, room) in enumerate(self._free):
             if room >= count:
                 self._free[k : k + 1] = [(first + count, room - count)] if room > count else []
@@ -109,7 +109,7 @@ class RoomOfKernel:
         return self.size - count
 
     def give_back(self, first: int, count: int) -> None:
-        """Free ``count`` neighbouring places."""
+        """Free ``count`` consecutive places."""
         if not count:
             return
         self._free.append((first, count))
@@ -124,11 +124,11 @@ class RoomOfKernel:
 
 
 def program_in_c(program: Program, signature: ca.Function) -> PrintedKernel:
-    """A program as C.
+    """Write a program in C.
 
     Args:
         program: the program.
-        signature: a function with the name, arguments and results that it has in C.
+        signature: a function with its name, arguments and results in C.
 
     Raises:
         UnknownOperationError: there is an operation that has no form in C.
@@ -137,7 +137,7 @@ def program_in_c(program: Program, signature: ca.Function) -> PrintedKernel:
 
 
 class _Writing:
-    """A program on its way to C."""
+    """Writer of a program in C."""
 
     def __init__(self, program: Program, signature: ca.Function) -> None:
         self.program = program
@@ -164,7 +164,7 @@ class _Writing:
         self.gathered_until = {numbers.tobytes(): k for k, read in enumerate(self.operands) for numbers in read}
 
     def result(self) -> PrintedKernel:
-        """The kernel."""
+        """Return the kernel."""
         self._write_arguments()
         self._write_constants()
         for k, unit in enumerate(self.units):
@@ -190,7 +190,7 @@ class _Writing:
     # What is read and written
 
     def _write_arguments(self) -> None:
-        """Copy the arguments: one that is zero may come without a pointer, and pieces of one follow on each other."""
+        """Copy the arguments; a zero one may be a null pointer, and the pieces of one are consecutive."""
         for number, argument in enumerate(self.program.arguments):
             count = sum(len(piece.numbers) for piece in argument.pieces)
             if not count:
@@ -202,7 +202,7 @@ class _Writing:
                 first += len(piece.numbers)
 
     def _write_constants(self) -> None:
-        """Copy the constants that a table gathers together with results of steps."""
+        """Copy the constants that a table gathers together with results of steps to the work array."""
         mixed: dict[int, None] = {}
         wanted = [value.numbers for value in self.program.results.values()]
         for operands in self.operands:
@@ -226,13 +226,13 @@ class _Writing:
                 self.lines.append(f"{asked}{self._moved(f'res[{number}]', places)}")
 
     def _moved(self, to: str, places: Numbers) -> str:
-        """Statement that brings entries together."""
+        """Write the statement that gathers entries."""
         if np.all(np.diff(places) == 1):
             return f"program_read({to}, w + {places[0]}, {len(places)});"
         return f"program_gather({to}, w, {self.tables.of_places(places[:, None])});"
 
     def _pointer(self, numbers: Numbers) -> str:
-        """Pointer to entries that follow on each other; entries that lie apart are gathered before."""
+        """Pointer to consecutive entries; scattered entries are gathered first."""
         if np.all(self.origins.is_constant(numbers)):
             values = self.origins.constants(numbers)
             return self.tables.of_numbers(values)
@@ -248,7 +248,7 @@ class _Writing:
         return f"w + {self.gathered[key]}"
 
     def _place_things(self, k: int, numbers: Numbers) -> int:
-        """Give entries neighbouring places until a unit reads them for the last time; return the first place."""
+        """Give entries consecutive places until their last use; return the first place."""
         first = self.memory.take(len(numbers))
         self.place[numbers] = np.arange(first, first + len(numbers))
         self._free_after(k, numbers, first, len(numbers))
@@ -260,11 +260,11 @@ class _Writing:
     # Lifetimes
 
     def _last_use_of(self, numbers: Numbers) -> int:
-        """The last unit that reads any of these entries."""
+        """Index of the last unit that reads any of these entries."""
         return max((self.last_use[owner] for owner in self.origins.holders(numbers)), default=UNUSED)
 
     def _last_uses(self) -> dict[int, int]:
-        """The last unit that reads each thing."""
+        """Index of the last unit that reads each thing."""
         last: dict[int, int] = defaultdict(lambda: UNUSED)
         for k, unit in enumerate(self.units):
             for owner in self.origins.holders(_joined(unit.operands)):
@@ -275,7 +275,7 @@ class _Writing:
         return last
 
     def _operands_of(self, unit: Unit) -> list[Numbers]:
-        """Entries of each array that a unit reads; none of steps without a loop, which read numbers one by one."""
+        """Entries of each array that a unit reads; empty for steps without a loop, which read numbers one by one."""
         if unit.kind is UnitKind.STRAIGHT:
             return []
         if unit.kind is UnitKind.CALLS:
@@ -335,7 +335,7 @@ class _Writing:
         self.statements += len(block.statements)
 
     def _turn_of_loop(self, steps: Sequence[Step], kept: Sequence[Numbers]) -> tuple[Listing, list[Numbers]]:
-        """The operations of a turn, whose results are of the kept entries; and the entries that it reads, in order."""
+        """Operations of one turn of a loop, which compute the kept entries, and the entries that it reads, in order."""
         inside: dict[bytes, ca.SX] = {}
         read: dict[bytes, ca.SX] = {}
         operands_read: list[Numbers] = []
@@ -359,14 +359,14 @@ class _Writing:
         return Listing(ca.Function("turn", [symbols], [ca.densify(ca.vertcat(*ca.cse(stored)))])), operands_read
 
     def _one_constant(self, numbers: Numbers) -> ca.SX | None:
-        """The constant that all entries are; None where they are no constants, or several."""
+        """The constant that all entries equal; None if they are not constant or not equal."""
         if not np.all(self.origins.is_constant(numbers)):
             return None
         values = set(self.origins.constants(numbers))
         return ca.SX(values.pop()) if len(values) == 1 else None
 
     def _operand_of_loop(self, numbers: Numbers, in_fours: bool) -> str:
-        """The entry of an operand that turn i of a loop reads."""
+        """Expression of the entry of an operand that turn i of a loop reads."""
         if len(numbers) == 1:
             number = f"w[{self.place[numbers[0]]}]"
             return f"SPREAD({number})" if in_fours else number
@@ -374,7 +374,7 @@ class _Writing:
         return f"LOAD({pointer})" if in_fours else f"*({pointer})"
 
     def _write_product(self, k: int, step: Step) -> None:
-        """Write a product of matrices, which may be added to a third."""
+        """Write a product of matrices, which may be added to a third matrix."""
         left, right, *added = step.operands
         (result,) = step.results
         x, y = (self._pointer(operand.numbers) for operand in (left, right))
@@ -425,7 +425,7 @@ class _Writing:
         self._write_straight(Listing(ca.Function("steps", [given], [result])), self.place[read], self.place[stored], k)
 
     def _write_straight(self, listing: Listing, read: Numbers, stored: Numbers, k: int) -> None:
-        """Write scalars that read and store numbers at these places, in functions that are not too long."""
+        """Write scalars that read and store numbers at these places, in functions of bounded length."""
         statements = computations(listing, SINGLE)
         outputs = listing.outputs[0]
         for entry, place in enumerate(stored.tolist()):
@@ -455,7 +455,7 @@ class _Writing:
         return _joined(grouped)
 
     def _write_calls(self, k: int, unit: Unit) -> None:
-        """Write calls of one function, four at a time where there are enough calls."""
+        """Write calls of one function, four at a time if there are enough calls."""
         function = unit.steps[0].function
         width = self._width(unit)
         turns = -(-len(unit.steps) // width)
@@ -473,7 +473,7 @@ class _Writing:
         self.lines.append(f"  MADE({self.name}_{word})({given}, w + {first}, {turns});")
 
     def _write_kernel(self, k: int, step: Step) -> None:
-        """Write a call of a function that calls others, and the function as a kernel."""
+        """Write a call of a function that itself calls others, and the function as a kernel."""
         function = step.function
         name: str = function.name()
         if name not in self.kernels:
@@ -492,7 +492,7 @@ class _Writing:
         self.lines.append(f"    MADE({name})(given, made, w + {room}); }}")
 
     def _width(self, unit: Unit) -> int:
-        """Number of calls that are made at once."""
+        """Number of calls of a unit that are made at once."""
         if len(unit.steps) < FEWEST:
             return 1
         try:
@@ -567,16 +567,16 @@ def _owners(program: Program, values: Sequence[Value]) -> list[int]:
 
 
 _Key = tuple[UnitKind, int]
-"""A key that steps share which one unit may hold: the kind of unit, and its turns, its function or its step."""
+"""Key of all steps that may be in one unit: the kind of unit, and its turns, its function or its step."""
 
 
 def _key(step: Step, number: int, calls: Mapping[int, int]) -> _Key:
-    """Which unit may hold a step.
+    """Key of the unit in which a step may be.
 
     Args:
         step: the step.
-        number: its number.
-        calls: how often each function is called, by its hash.
+        number: index of the step.
+        calls: number of calls of each function, by its hash.
     """
     if step.called and (calls[hash(step.function)] >= FEWEST or _stays(step)):
         return (UnitKind.SINGLE, number) if _is_kernel(step) else (UnitKind.CALLS, hash(step.function))
@@ -589,12 +589,12 @@ def _key(step: Step, number: int, calls: Mapping[int, int]) -> _Key:
 
 
 def _joins(key: _Key, operand: Numbers, made: Numbers) -> bool:
-    """Whether a step may stand in the unit that computes an operand: a turn of a loop reads what that turn made."""
+    """Whether a step may be in the unit that computes its operand: a turn of a loop reads only its own results."""
     return key[0] is UnitKind.STRAIGHT or (key[0] is UnitKind.LOOP and np.array_equal(operand, made))
 
 
 def _stays(step: Step) -> bool:
-    """Whether a step calls a function that cannot be written out where it is called."""
+    """Whether a step calls a function that cannot be inlined."""
     if _is_kernel(step):
         return True
     try:
@@ -611,7 +611,7 @@ def _is_kernel(step: Step) -> bool:
 
 
 def _in_bundles(unit: Unit) -> list[Unit]:
-    """A unit; small steps in bundles of bounded length, a unit each: a bundle keeps what later ones read."""
+    """Split a unit of small steps into bundles of bounded length; a bundle stores values that later bundles read."""
     if unit.kind is not UnitKind.STRAIGHT:
         return [unit]
     bundles = [Unit(unit.kind, [])]
@@ -635,7 +635,7 @@ def _matrix(pattern: ca.Sparsity, numbers: Numbers, entry_of: dict[int, ca.SX]) 
 
 
 def _text(listing: Listing, read: Numbers, elsewhere: dict[int, int], number: int) -> str | None:
-    """Text of a value that is in no variable."""
+    """Text of a value that is not in a variable."""
     value = listing.values[number]
     if number in elsewhere:
         return f"passed[{elsewhere[number]}]"
@@ -647,7 +647,7 @@ def _text(listing: Listing, read: Numbers, elsewhere: dict[int, int], number: in
 
 
 def _triples(left: ca.Sparsity, right: ca.Sparsity, result: ca.Sparsity) -> Numbers:
-    """Entries of left, right and result of each multiplication in a sparse product, shape (count, 3)."""
+    """Entries of left factor, right factor and result in each multiplication of a sparse product, shape (count, 3)."""
     place_of = {entry: k for k, entry in enumerate(zip(*result.get_triplet(), strict=True))}
     of_column: dict[int, list[tuple[int, int]]] = defaultdict(list)
     for k, (i, j) in enumerate(zip(*left.get_triplet(), strict=True)):

@@ -1,6 +1,6 @@
-"""A function of scalars as numbers that a loop in C reads: the three stages of a step at once, and nothing to compile.
+"""A function of scalars as a table that a loop in C interprets, for three stages of a step at once, without compiling.
 
-CasADi's virtual machine takes one state at a time, and as long to find out what an instruction is as to execute it.
+CasADi's virtual machine computes one state at a time, and takes as long to decode an instruction as to execute it.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from cosserat_casadi.compiling.listing import BINARY, CHOICES, FUNCTIONS, REWRIT
 from cosserat_casadi.maths.typing import FloatArray
 
 Lines = npt.NDArray[np.intc]
-"""One line for each instruction: its operation by CasADi's number, slots of the result and of its operands."""
+"""One line for each instruction: CasADi's number of the operation, slots of the result and of the operands."""
 
 PLUS_PRODUCT, MINUS_PRODUCT, PRODUCT_MINUS = range(300, 303)
-"""Operations beyond CasADi's: c + a b, c − a b and a b − c, rounded twice as by two instructions."""
+"""Operations in addition to CasADi's: c + a b, c − a b and a b − c, rounded twice as by two instructions."""
 
 OF_TWO = {"atan2", "pow", "fmin", "fmax", "fmod", "copysign", "hypot"}
 """Functions of the mathematical library with two arguments."""
@@ -33,11 +33,11 @@ KNOWN |= {*BINARY, *FUNCTIONS, *CHOICES}
 
 
 class ScalarProgram(NamedTuple):
-    """A function as lines on numbered slots; the first slots are its arguments, the next its results.
+    """A function as lines on numbered slots: first the slots of arguments, then those of results.
 
     Attributes:
         lines: shape (lines, 5), with three operands.
-        slots: contents of the slots before the first line: constants where they are, shape (slots,).
+        slots: initial contents of the slots, with constants in place, shape (slots,).
         arguments: number of slots of arguments.
     """
 
@@ -47,7 +47,7 @@ class ScalarProgram(NamedTuple):
 
 
 def scalar_program(function: ca.Function) -> ScalarProgram | None:
-    """The program of a function of scalar instructions (an ``SXFunction``); None where it has one that is not known."""
+    """Make the program of a scalar function (an ``SXFunction``); None if an instruction is not supported."""
     if not function.is_a("SXFunction"):
         return None
     writer = _Writer()
@@ -64,12 +64,12 @@ def scalar_program(function: ca.Function) -> ScalarProgram | None:
 
 @dataclass
 class _Writer:
-    """Slots that are taken, and the functions that are called.
+    """Writer of a program: slots in use, and the functions that are called.
 
     Attributes:
         size: number of slots.
-        constants: first slot of the constants of each function, and their values.
-        called: by the hash of a function its first slot and its lines.
+        constants: first slot and values of the constants of each function.
+        called: first slot and lines of each called function, by its hash.
     """
 
     size: int = 0
@@ -77,7 +77,7 @@ class _Writer:
     called: dict[int, tuple[int, Lines | None]] = field(default_factory=dict)
 
     def lines_of(self, function: ca.Function, begin: int) -> Lines | None:
-        """The lines of a function whose slots begin at one; None where it has an instruction that is not known."""
+        """Write the lines of a function whose slots begin at ``begin``; None if an instruction is not supported."""
         every = range(function.n_instructions())
         codes = np.fromiter(map(function.instruction_id, every), np.intc, len(every))
         if not KNOWN.issuperset(np.unique(codes).tolist()):
@@ -115,12 +115,12 @@ class _Writer:
         return np.concatenate([*parts, lines[last + 1 :]])
 
     def _call(self, callee: ca.Function, operands: Lines, results: Lines, work: int) -> list[Lines] | None:
-        """Lines of a call: the arguments are copied, and the results when all results are there.
+        """Write the lines of a call: copies of the arguments, the function, and copies of the results.
 
         Args:
             callee: the function that is called.
             operands: numbers of all its arguments in the work of the caller.
-            results: numbers of its results there; below zero where a result is not wanted.
+            results: numbers of its results there; negative for results that are not wanted.
             work: slot of the first number of the caller's work.
         """
         place = callee.__hash__()
@@ -138,9 +138,9 @@ class _Writer:
 
 
 def _first_and_last(numbers: Iterable[list[int]], count: int) -> tuple[Lines, Lines]:
-    """The first and the last of the numbers of each of so many instructions; zeros where there are none.
+    """First and last number in the list of each instruction; zeros for empty lists.
 
-    No list lives on: tens of thousands of lists would have Python look for cycles of references.
+    No list is kept: with tens of thousands of lists Python would search for cycles of references.
     """
     ends = chain.from_iterable((each[0], each[-1]) if each else (0, 0) for each in numbers)
     both = np.fromiter(ends, np.intc, 2 * count).reshape(-1, 2)
@@ -148,12 +148,12 @@ def _first_and_last(numbers: Iterable[list[int]], count: int) -> tuple[Lines, Li
 
 
 def _copied(to: Lines, slots: Lines) -> Lines:
-    """Lines that copy slots."""
+    """Write lines that copy slots."""
     return np.stack([np.full(len(to), ca.OP_ASSIGN), to, slots, slots], axis=1).astype(np.intc)
 
 
 def _definitions(lines: Lines) -> Lines:
-    """Numbers of the lines that have written the operands of each line, −1 where none has, shape (lines, 2)."""
+    """Indices of the lines that wrote the operands of each line, −1 if none did, shape (lines, 2)."""
     count = len(lines)
     place = np.arange(count)
     written = np.sort(lines[:, 1].astype(np.int64) * count + place)
@@ -167,12 +167,12 @@ def _definitions(lines: Lines) -> Lines:
 
 
 def _are_results(lines: Lines, results: slice) -> npt.NDArray[np.bool_]:
-    """Which lines write a result of the program."""
+    """Mask of the lines that write a result of the program."""
     return np.asarray((results.start <= lines[:, 1]) & (lines[:, 1] < results.stop))
 
 
 def _without_copies(lines: Lines, results: slice) -> Lines:
-    """Lines that read constants and arguments where they are, without the copies of these."""
+    """Replace reads of copied constants and arguments by reads of the originals, and drop the copies."""
     is_written = np.zeros(lines[:, 1:].max(initial=0) + 1, dtype=bool)
     is_written[lines[:, 1]] = True
     is_copy = (lines[:, 0] == ca.OP_ASSIGN) & ~is_written[lines[:, 2]]
@@ -185,7 +185,7 @@ def _without_copies(lines: Lines, results: slice) -> Lines:
 
 
 def _with_products(lines: Lines, results: slice) -> Lines:
-    """Lines with three operands, in which a product and the sum behind it that alone reads it are one line."""
+    """Make lines with three operands, where a product and the only sum that reads it become one line."""
     operation, to, first, second = lines.T
     definitions = _definitions(lines)
     read = np.concatenate([definitions[:, 0], definitions[first != second, 1]])
@@ -204,7 +204,7 @@ def _with_products(lines: Lines, results: slice) -> Lines:
 
 
 def cases_in_c() -> str:
-    """Cases of operations for the loop in C: ``a``, ``b``, ``c`` are the operands of a line, ``to`` is its result."""
+    """Write the cases of the loop in C by operation: operands ``a``, ``b``, ``c`` of a line, and its result ``to``."""
     fours = {ca.OP_ASSIGN: "LOAD(a)", ca.OP_SQ: "LOAD(a) * LOAD(a)"}
     fours |= {code: f"LOAD(a) {sign} LOAD(b)" for code, sign in BINARY.items()}
     fours[PLUS_PRODUCT] = "LOAD(c) + LOAD(a) * LOAD(b)"

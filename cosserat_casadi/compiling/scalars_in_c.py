@@ -1,8 +1,8 @@
-"""Functions of scalars as C that computes four intervals of a rod, or four columns of a Jacobian, at once.
+"""Functions of scalars in C that compute four intervals of a rod, or four columns of a Jacobian, at once.
 
-Calls of one function that do not wait for each other, as for the intervals of a rod, are made four at a time, and so
-are the columns of a Jacobian (codegen/columns.py). Each number comes from the operations of the function in their
-order, and equals CasADi's to the last digit.
+Independent calls of one function, such as those for the intervals of a rod, are made four at a time, and so are the
+columns of a Jacobian (codegen/columns.py). Each number results from the operations of the function in their order, and
+equals CasADi's to the last digit.
 """
 
 from __future__ import annotations
@@ -64,13 +64,13 @@ def scalars_in_c(
     arithmetic: Arithmetic = SINGLE,
     kernels: Mapping[int, PrintedKernel] | None = None,
 ) -> PrintedKernel:
-    """A function of scalars as C.
+    """Write a function of scalars in C.
 
     Args:
         function: the function.
-        signature: a function with the name, arguments and first result that it has in C.
-        arithmetic: of the numbers that it computes.
-        kernels: kernels that it calls by the hash of their functions (codegen/shared_values.py).
+        signature: a function with its name, arguments and first result in C.
+        arithmetic: arithmetic of its numbers.
+        kernels: kernels that it calls, by the hash of their functions (codegen/shared_values.py).
 
     Raises:
         UnknownOperationError: there is an operation that has no form here.
@@ -79,12 +79,12 @@ def scalars_in_c(
 
 
 def shared_in_c(function: ca.Function, earlier: Sequence[PrintedKernel], first: int) -> PrintedKernel:
-    """A kernel as C whose results stay in the array that it works in, an array of the kernels that call it.
+    """Write a kernel in C whose results stay in its work array, which belongs to the kernels that call it.
 
     Args:
-        function: the function, of scalars and with one result.
+        function: the function of scalars, with one result.
         earlier: kernels of this kind that are called before; their results are its last arguments.
-        first: where its numbers begin in the array.
+        first: index in the array at which its numbers begin.
 
     Raises:
         UnknownOperationError: there is an operation that has no form here.
@@ -95,7 +95,7 @@ def shared_in_c(function: ca.Function, earlier: Sequence[PrintedKernel], first: 
 
 
 def with_calls_in_fours(kernel: ca.Function) -> Kernel:
-    """A kernel of which calls of one function are made together; itself where it has none, or no form here."""
+    """Write a kernel with joint calls of one function; the function itself without such calls or without support."""
     if not kernel.is_a("SXFunction") or not kernel.find_functions(0):
         return kernel
     try:
@@ -107,12 +107,12 @@ def with_calls_in_fours(kernel: ca.Function) -> Kernel:
 def columns_in_fours(
     form: ColumnForm, signature: ca.Function, kernels: Mapping[int, PrintedKernel] | None = None
 ) -> PrintedKernel:
-    """A Jacobian by columns as C.
+    """Write a Jacobian by columns in C.
 
     Args:
         form: the Jacobian.
-        signature: a function with the name, arguments and result that it has in C.
-        kernels: as for :func:`scalars_in_c`.
+        signature: a function with its name, arguments and result in C.
+        kernels: kernels that it calls, as for :func:`scalars_in_c`.
 
     Raises:
         UnknownOperationError: there is an operation that has no form here.
@@ -122,11 +122,11 @@ def columns_in_fours(
 
 @dataclass(frozen=True)
 class ColumnedFunction:
-    """A function by columns, with the name, arguments and results that it has in C.
+    """A function by columns, with its name, arguments and results in C.
 
     Attributes:
         form: the function.
-        signature: the function as CasADi has it.
+        signature: the function in CasADi.
     """
 
     form: ColumnForm
@@ -134,7 +134,7 @@ class ColumnedFunction:
 
     @cached_property
     def printed(self) -> PrintedKernel:
-        """The function in C, which calls no other kernel.
+        """Write the function in C, which calls no other kernel.
 
         Raises:
             UnknownOperationError: there is an operation that has no form here.
@@ -147,11 +147,11 @@ class _Batch:
     """Calls of one function that are made together.
 
     Attributes:
-        calls: their numbers.
-        width: for how many calls the code is: LANES, or one.
-        operands: of one call, how many.
-        results: of one call, how many.
-        made: where their results are in the numbers that the kernel works in.
+        calls: indices of the calls.
+        width: number of calls that the code makes at once: LANES, or one.
+        operands: number of operands of one call.
+        results: number of results of one call.
+        made: index of their results in the work array of the kernel.
     """
 
     calls: tuple[int, ...]
@@ -162,22 +162,22 @@ class _Batch:
 
     @property
     def turns(self) -> int:
-        """How often the code is gone through."""
+        """Number of turns of the loop over the calls."""
         return -(-len(self.calls) // self.width)
 
     def operand_place(self, turn: int, lane: int, operand: int) -> int:
-        """Where an operand is behind the first."""
+        """Offset of an operand from the first one."""
         return self.width * (turn * self.operands + operand) + lane
 
     def result_place(self, turn: int, lane: int, result: int) -> int:
-        """Where a result is behind the first."""
+        """Offset of a result from the first one."""
         return self.width * (turn * self.results + result) + lane
 
 
 class _Writing:
-    """A function on its way to C.
+    """Writer of a function in C.
 
-    Values that other functions in C read have a place in the numbers ``w`` that the kernel works in; all others are in
+    Values that other functions in C read have a place in the work array ``w`` of the kernel; all other values are in
     variables.
     """
 
@@ -222,7 +222,7 @@ class _Writing:
         self.statements = 0
 
     def inherit(self, argument: int, kernels: Sequence[PrintedKernel]) -> None:
-        """Read arguments, from a number on, where these kernels leave them."""
+        """Read arguments, from an index on, from the places where these kernels leave them."""
         for number, value in enumerate(self.listing.values):
             if isinstance(value, Read) and value.argument >= argument:
                 self.place[number] = kernels[value.argument - argument].places[value.entry]
@@ -256,7 +256,7 @@ class _Writing:
         )
 
     def _write_main(self) -> None:
-        """Write the function itself, which is a row of others where it is long."""
+        """Write the function itself, as a sequence of functions if it is long."""
         given = "const casadi_real **arg, casadi_real **res, casadi_real *w"
         # What one of them passes on to others stands behind all else.
         first = self.reals
@@ -280,18 +280,18 @@ class _Writing:
         self.functions.append("\n".join([head, *lines, "  return 0;", "}\n"]))
 
     def _text_in_part(self, elsewhere: dict[int, int], number: int) -> str | None:
-        """Text of a value without columns that is in no variable of a part."""
+        """Text of a value without columns that is not in a variable of a part."""
         return f"w[{elsewhere[number]}]" if number in elsewhere else self._text(number)
 
     def _room(self, count: int) -> int:
-        """Where so many numbers are that the kernel works in."""
+        """Reserve so many numbers in the work array; return the first index."""
         self.reals += count
         return self.reals - count
 
     # What belongs where
 
     def _in_column(self) -> list[bool]:
-        """Whether each value depends on the column."""
+        """Mask of the values that depend on the column."""
         found: list[bool] = []
         for number, value in enumerate(self.listing.values):
             of_turns = (
@@ -309,7 +309,7 @@ class _Writing:
         return [value for value in given if not self.in_column[value] and not self._is_constant(value)]
 
     def _batches(self) -> dict[int, _Batch]:
-        """Calls that are made together with each call: of the same function, and behind as many other calls."""
+        """Batches of all calls: a batch consists of calls of one function with equal depth in the chain of calls."""
         depth = self._depths()
         groups: dict[tuple[int, int], list[int]] = defaultdict(list)
         for number, call in enumerate(self.listing.calls):
@@ -360,7 +360,7 @@ class _Writing:
     # What has no columns
 
     def _compute(self, root: int) -> None:
-        """Append what a value without columns needs and has not got yet, then itself."""
+        """Append the missing operands of a value without columns, then the value."""
         waiting = [root]
         while waiting:
             number = waiting[-1]
@@ -395,7 +395,7 @@ class _Writing:
         return [operand for call in batch.calls for operand in self.listing.calls[call].operands]
 
     def _append(self, number: int) -> None:
-        """Append the statements of a value whose operands are there."""
+        """Append the statements of a value whose operands are available."""
         value = self.listing.values[number]
         if isinstance(value, Called):
             self._append_calls(self.batch_of[value.call])
@@ -411,7 +411,7 @@ class _Writing:
             self.main.statements.append(Statement(f"w[{self.place[number]}] = {{0}};", [number]))
 
     def _kernel(self, calls: Sequence[int]) -> PrintedKernel | None:
-        """The kernel that calls of one function are of, if any."""
+        """Return the kernel that calls of one function call, if any."""
         return self.kernels[hash(self.listing.calls[calls[0]].function)]
 
     def _append_calls(self, batch: _Batch) -> None:
@@ -498,7 +498,7 @@ class _Writing:
         return _run_of("w", known, 1) if len(known) == len(places) else None
 
     def _write_results(self) -> None:
-        """Append the entries of all results; one of several may be asked for by no pointer."""
+        """Append the entries of all results; the pointer of one of several results may be null."""
         count = self.signature.n_out()
         for result in range(count):
             entries = self.listing.outputs[result]
@@ -546,7 +546,7 @@ class _Writing:
         self.main.statements.append(Statement(f"{asked}program_gather({to}, w, {table});", []))
 
     def _keep_results(self) -> None:
-        """Append the entries of the one result, each in another place."""
+        """Append the entries of the single result, each at a separate place of the work array."""
         kept = self.listing.outputs[0].values()
         for number in kept:
             if number not in self.place:
@@ -565,7 +565,7 @@ class _Writing:
         return self.form is not None and isinstance(value, Read) and value.argument == self.form.columns_argument
 
     def _text(self, number: int) -> str | None:
-        """Text of a value without columns that is in no variable."""
+        """Text of a value without columns that is not in a variable."""
         value = self.listing.values[number]
         if isinstance(value, Constant):
             return self.arithmetic.number(value.value)
@@ -595,7 +595,7 @@ class _Writing:
     # Columns
 
     def _write_columns(self, form: ColumnForm) -> None:
-        """Write what computes four columns, in parts that pass values on, and append its calls."""
+        """Write the code for four columns, in parts that pass values on, and append its calls."""
         statements = self._statements_of_columns(form)
         # Behind the values that calls take and give.
         first = self.passed.count
@@ -695,7 +695,7 @@ class _Writing:
         return _run_of("passed", range(first, first + len(operands)), LANES)
 
     def _text_in_columns(self, elsewhere: dict[int, int], number: int) -> str | None:
-        """Text of a value that is in no variable of the code of columns."""
+        """Text of a value that is not in a variable of the code for columns."""
         value = self.listing.values[number]
         if number in elsewhere:
             return f"PASSED({LANES * elsewhere[number]})"
@@ -800,14 +800,14 @@ def callee_at_places(
 
 
 def callee(listing: Listing, arithmetic: Arithmetic) -> tuple[Callee, int]:
-    """A function that kernels call, and its number of statements.
+    """Write a function that kernels call; also return its number of statements.
 
     Args:
         listing: the values of the function.
         arithmetic: FOURS for four calls at once, or arithmetic of single numbers.
 
     Raises:
-        UnknownOperationError: there is an operation that has no form here, or a call of another function.
+        UnknownOperationError: an operation is not supported, or the function calls another one.
     """
     function = listing.function
     if listing.calls:
@@ -841,12 +841,12 @@ def callee(listing: Listing, arithmetic: Arithmetic) -> tuple[Callee, int]:
 
 
 def _body(lines: Iterable[str]) -> str:
-    """Body of a function."""
+    """Write the body of a function."""
     return "\n".join([" {", *lines, "}\n"])
 
 
 def _starts(sizes: Iterable[int]) -> list[int]:
-    """Where each of some vectors begins that lie one behind the other."""
+    """Start indices of consecutive vectors."""
     starts = []
     total = 0
     for size in sizes:

@@ -1,4 +1,4 @@
-"""Records that Python shares with C: they point at arrays, at other records, and at functions of Python."""
+"""Records that Python shares with C, with pointers to arrays, to other records, and to Python functions."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ import numpy as np
 POINTER = ctypes.c_void_p
 
 _RAISED: list[BaseException] = []
-"""Exceptions of functions of Python that C has called."""
+"""Exceptions of Python functions that C has called."""
 
 
 def raise_what_was_raised() -> None:
-    """Raise what Python raised first where C called it; C may have called more before it ended."""
+    """Raise the first exception of a Python function that C called; C may have called more before it returned."""
     if _RAISED:
         first = _RAISED[0]
         _RAISED.clear()
@@ -23,21 +23,21 @@ def raise_what_was_raised() -> None:
 
 
 def address_of(function: Any) -> int:
-    """Where a function of a library is in memory."""
+    """Address of a function of a library."""
     address = ctypes.cast(function, POINTER).value
     assert address is not None, "a function has an address"
     return address
 
 
 class Held:
-    """A record that C reads, and the arrays and functions that it points at.
+    """A record that C reads, which keeps alive the arrays and functions to which it points.
 
     Args:
         record: the record.
 
     Attributes:
         record: the record.
-        address: of it.
+        address: address of the record.
     """
 
     def __init__(self, record: Any) -> None:
@@ -46,22 +46,22 @@ class Held:
         self._kept: list[Any] = []
 
     def share(self, name: str, array: np.ndarray[Any, Any]) -> None:
-        """Have a member of the record point at an array."""
+        """Make a member of the record point to an array."""
         self._kept.append(array)
         setattr(self.record, name, array.ctypes.data)
 
     def point(self, name: str, held: Held) -> None:
-        """Have a member of the record point at another record."""
+        """Make a member of the record point to another record."""
         self._kept.append(held)
         setattr(self.record, name, held.address)
 
     def call_back(self, name: str, kind: Callable[..., Any], function: Callable[..., None]) -> None:
-        """Have a member of the record be a function of Python, whose exception :func:`raise_what_was_raised` raises.
+        """Make a member of the record a Python function, whose exception :func:`raise_what_was_raised` raises.
 
         Args:
-            name: of the member.
-            kind: prototype of the function in C, which returns zero unless Python has raised something.
-            function: in Python.
+            name: name of the member.
+            kind: prototype of the function in C, which returns zero unless Python has raised an exception.
+            function: the Python function.
         """
 
         def guarded(*arguments: Any) -> int:
@@ -77,5 +77,5 @@ class Held:
         setattr(self.record, name, wrapped)
 
     def keep(self, held: Any) -> None:
-        """Keep what the record has the address of."""
+        """Keep an object alive whose address is in the record."""
         self._kept.append(held)

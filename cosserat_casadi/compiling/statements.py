@@ -1,4 +1,4 @@
-"""Statements in C on numbers and on fours, with variables that are used again."""
+"""Statements in C on single numbers and on four numbers at a time, with reused variables."""
 
 from __future__ import annotations
 
@@ -23,36 +23,36 @@ from cosserat_casadi.compiling.listing import (
 )
 
 LONGEST = 300
-"""Statements on fours in one function: compilers take longer, and stack without optimisation, with longer ones."""
+"""Most statements on four numbers in a function; longer ones take compilers longer, and stack if not optimised."""
 
 LONGEST_OF_NUMBERS = 400
-"""Statements on numbers in one function: what compilers take grows faster than its length."""
+"""Most statements on single numbers in a function: the time of compilers grows faster than its length."""
 
 CHOICE, SUM, PRODUCT, ATOM = range(4)
-"""How tightly expressions bind in C: choices and comparisons, sums, products, and what needs no parentheses."""
+"""Precedence of expressions in C: choices and comparisons, sums, products, and atoms without parentheses."""
 
 NEARNESS = 8
-"""Part of the length of a function by which its end may move to where fewer values pass to the next one."""
+"""Share 1/NEARNESS of a function's length by which its end may move to pass fewer values to the next one."""
 
 SHARED_NUMBER = "C[000]"
-"""About how a constant looks that several functions have."""
+"""Text of typical length for a constant that several functions share."""
 
 LONGEST_LINE = 110
-"""Characters up to which the expression of a value that is read once stands where it is read."""
+"""Most characters of a line into which the expression of a value that is read once is inlined."""
 
 
 class Statement(NamedTuple):
     """One statement.
 
     Attributes:
-        text: an expression, or all of a statement that only writes; with ``{0}``, ``{1}`` for its operands.
+        text: an expression, or a complete statement that only writes; with ``{0}``, ``{1}`` for its operands.
         operands: numbers of the values that it reads.
         made: number of the value of the expression; None for a statement that only writes.
-        binding: how tightly the expression binds, of ATOM, PRODUCT, SUM and CHOICE; a written text takes any operand.
-        sides: how tightly each operand must bind to stand without parentheses.
-        asked: whether it writes only where a result is asked for.
-        whole: places of the operands of which the expression is a whole number of C if they are, as comparisons are
-            without; None where it never is.
+        binding: precedence of the expression: ATOM, PRODUCT, SUM or CHOICE; a written text takes any operand.
+        sides: least precedence of each operand without parentheses.
+        asked: whether it writes only if a result is requested.
+        whole: indices of the operands that must be C integers for the expression to be one; empty for comparisons,
+            None for an expression that never is.
     """
 
     text: str
@@ -64,12 +64,12 @@ class Statement(NamedTuple):
     whole: Sequence[int] | None = None
 
     def stores(self, value: int | None) -> bool:
-        """Whether the statement stores a value as it is, whatever is asked for."""
+        """Whether the statement stores a value unconditionally and unchanged."""
         alone = all(side == CHOICE for side in self.sides)
         return self.made is None and not self.asked and alone and list(self.operands) == [value]
 
     def with_operand(self, place: int, other: Statement) -> Statement:
-        """This statement with the expression of another in place of an operand."""
+        """Return the statement with an operand replaced by the expression of another statement."""
         count = len(other.operands)
         inner = other.text.format(*[f"{{{place + i}}}" for i in range(count)])
         if self.sides and other.binding < self.sides[place]:
@@ -89,10 +89,10 @@ class Block:
     """Statements of one function.
 
     Attributes:
-        type: of its variables.
-        letter: what their names begin with.
+        type: type of its variables.
+        letter: prefix of their names.
         statements: the statements.
-        variables: how many there are, once it is written.
+        variables: number of variables, after it is written.
     """
 
     type: str
@@ -101,10 +101,10 @@ class Block:
     variables: int = 0
 
     def lines(self, text_of: Callable[[int], str | None]) -> list[str]:
-        """Declarations and statements.
+        """Write declarations and statements.
 
         Args:
-            text_of: text of a value that is in no variable of this block; None for one that is.
+            text_of: function of a value ↦ its text if it is not in a variable of this block, else None.
         """
         statements = _nested(self.statements, text_of)
         last_use = {operand: i for i, statement in enumerate(statements) for operand in statement.operands}
@@ -135,24 +135,24 @@ class Block:
         return f"{self.letter}{self.variables - 1}"
 
     def _declarations(self) -> list[str]:
-        """Declarations, some on each line."""
+        """Write the declarations, several on each line."""
         names = [f"{self.letter}{i}" for i in range(self.variables)]
         return [f"  {self.type} {', '.join(names[i : i + 16])};" for i in range(0, len(names), 16)]
 
 
 VALUES_OF_CHOICES: Mapping[int, Sequence[int]] = {ca.OP_IF_ELSE_ZERO: (1,), ca.OP_SIGN: (0,)}
-"""Places of the operands that are chosen; other choices answer a question."""
+"""Indices of the operands among which an operation chooses; other operations of this kind compare."""
 
 
 @dataclass(frozen=True)
 class Arithmetic:
-    """How numbers and operations on them are written.
+    """Notation of numbers and operations in C.
 
     Attributes:
         functions: names of functions of the mathematical library, by operation.
         choices: comparisons and choices, by operation.
-        spread: what a constant is written in.
-        together: calls of one function from which on they are made together; None for never.
+        spread: format of a constant.
+        together: least number of calls of one function that are made together; None for never.
     """
 
     functions: Mapping[int, str]
@@ -161,14 +161,14 @@ class Arithmetic:
     together: int | None
 
     def number(self, value: float) -> str:
-        """A constant."""
+        """Write a constant."""
         return self.spread.format(number_in_c(value))
 
     def operation(self, operation: int, operands: Sequence[int], made: int) -> Statement:
-        """An operation.
+        """Write an operation.
 
         Raises:
-            UnknownOperationError: it has no form here.
+            UnknownOperationError: the operation is not supported.
         """
         if operation in BINARY:
             binding = SUM if operation in SUMS else PRODUCT
@@ -186,10 +186,10 @@ class Arithmetic:
 
 
 SINGLE = Arithmetic(FUNCTIONS, CHOICES, "{}", FEWEST)
-"""Numbers one by one, and calls of intervals four at a time."""
+"""Arithmetic of single numbers, with calls for intervals four at a time."""
 
 FOURS = Arithmetic({}, {}, "EACH({})", None)
-"""Four numbers at once."""
+"""Arithmetic of four numbers at once."""
 
 LANES_OF_ROWS = Arithmetic(
     {
@@ -202,11 +202,11 @@ LANES_OF_ROWS = Arithmetic(
     "IN_ALL({})",
     None,
 )  # fmt: skip
-"""Numbers of several rows at once. Each lane answers a comparison in its own way, by 1 or 0: none branches."""
+"""Arithmetic of several rows at once. A comparison is 1 or 0 in each lane, without branches."""
 
 
 def _nested(statements: Sequence[Statement], text_of: Callable[[int], str | None]) -> list[Statement]:
-    """Statements with the expression of each value that is read once in its place, as far as lines stay short."""
+    """Inline the expression of each value that is read once, as long as lines stay short."""
     reads = Counter(operand for statement in statements for operand in statement.operands)
     waiting: dict[int, Statement] = {}
     written: list[Statement] = []
@@ -240,14 +240,14 @@ def _nested(statements: Sequence[Statement], text_of: Callable[[int], str | None
 
 
 def _length(statement: Statement, text_of: Callable[[int], str | None]) -> int:
-    """Characters of a statement, whose variables are short."""
+    """Number of characters of a statement, with short names of variables."""
     texts = [text_of(operand) or "a00" for operand in statement.operands]
     return len(statement.text.format(*[SHARED_NUMBER if "NUMBER" in text else text for text in texts]))
 
 
 @dataclass(frozen=True)
 class StatementPart:
-    """Statements of one function of several that follow on each other.
+    """Statements of one of several consecutive functions.
 
     Attributes:
         statements: the statements.
@@ -259,10 +259,10 @@ class StatementPart:
 
 
 def computations(listing: Listing, arithmetic: Arithmetic) -> list[Statement]:
-    """The operations of a function, in their order.
+    """Write the operations of a function, in their order.
 
     Raises:
-        UnknownOperationError: one has no form in the arithmetic.
+        UnknownOperationError: an operation has no form in the arithmetic.
     """
     statements = []
     for number, value in enumerate(listing.values):
@@ -274,13 +274,13 @@ def computations(listing: Listing, arithmetic: Arithmetic) -> list[Statement]:
 def in_parts(
     statements: Sequence[Statement], longest: int, store: Callable[[int], str], stored: Container[int] = ()
 ) -> tuple[list[StatementPart], int]:
-    """Statements in parts, each a function.
+    """Split statements into parts, each a function.
 
     Args:
         statements: the statements.
         longest: most statements in a part.
         store: place of a value that is passed on ↦ text of the statement that stores it.
-        stored: values that a later statement than the value's own stores, whose places are known.
+        stored: values that later statements store, so that their places are known.
 
     Returns:
         the parts, with statements that store the values that other parts read, and the number of these values.
@@ -300,7 +300,7 @@ def in_parts(
 
 
 def _ends_of_parts(statements: Sequence[Statement], longest: int, stored: Container[int]) -> list[int]:
-    """Where parts end: as equal ones do, or near there where fewer values pass."""
+    """Ends of parts: at equal lengths, or nearby where fewer values pass."""
     count = max(-(-len(statements) // longest), 1)
     size = len(statements) // count
     passing = _passing(statements, stored)
@@ -315,7 +315,7 @@ def _ends_of_parts(statements: Sequence[Statement], longest: int, stored: Contai
 
 
 def _passing(statements: Sequence[Statement], stored: Container[int]) -> list[int]:
-    """How many values the first k statements compute, and store nowhere, that later statements read, for each k."""
+    """Number of values, for each k, that the first k statements compute without storing and later statements read."""
     last_use = {operand: i for i, statement in enumerate(statements) for operand in statement.operands}
     change = [0] * (len(statements) + 1)
     for i, statement in enumerate(statements):
@@ -338,7 +338,7 @@ def _part(part: Sequence[Statement], passed: dict[int, int], store: Callable[[in
 
 
 def number_in_c(value: float) -> str:
-    """A constant in C; negative ones may follow an operation."""
+    """Write a constant in C, such that a negative one may follow an operation."""
     if not isfinite(value):
         return {inf: "INFINITY", -inf: "(-INFINITY)"}.get(value, "NAN")
     text = repr(value)

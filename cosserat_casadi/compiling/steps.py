@@ -1,13 +1,13 @@
-"""An MX function as steps on numbered entries: which numbers a computation takes, and which it makes.
+"""Conversion of an MX function to steps on numbered entries: the numbers that each computation reads and makes.
 
-* What only moves entries is no step. Of every matrix it is known which computed number each entry is: they are brought
-  into order when a step asks for them.
-* A constant matrix that falls apart into blocks, as for the turns of a rod about each axis, is multiplied
-  block by block where that is quicker.
-* Of a constant matrix times a constant matrix times a computed one, the two constants are multiplied beforehand where
-  that leaves fewer products: matrices that fold and unfold symmetric ones are worth it without loops alone.
-* A product Z = X Y of which Y is dense is written Zᵀ = Yᵀ Xᵀ. The columns that are added up are dense then, and the
-  routine of products.py runs along them without looking anything up.
+* Instructions that only move entries are no steps. The computed number of each entry of every matrix is known, and the
+  numbers are arranged when a step reads them.
+* A constant matrix that consists of separate blocks, as for the turns of a rod about each axis, is multiplied
+  block by block if that is faster.
+* In a product of two constant matrices and a computed one, the constants are multiplied beforehand if that leaves fewer
+  products; for matrices that fold and unfold symmetric ones only without loops.
+* A product Z = X Y with a dense Y is written as Zᵀ = Yᵀ Xᵀ. The columns that are summed are then dense, and the
+  routine of products.py runs along them without tables.
 """
 
 from __future__ import annotations
@@ -22,25 +22,25 @@ import numpy as np
 from cosserat_casadi.compiling.numbered import SMALL, Argument, Numbers, Origins, Program, Step, Value, column
 
 DENSE_RATE = 8.0
-"""Products a nanosecond that are added to long dense columns."""
+"""Products per nanosecond that are added to long dense columns."""
 
 LONG = 6
-"""Entries from which on a column is long: its sums do not wait for each other."""
+"""Least number of entries of a long column, whose sums are independent enough to overlap."""
 
 SHORT_RATE = 4.5
-"""Products a nanosecond that are added to shorter dense columns."""
+"""Products per nanosecond that are added to shorter dense columns."""
 
 SPARSE_RATE = 1.0
-"""Products a nanosecond that are added where every entry is looked up."""
+"""Products per nanosecond that are added with a table of every entry."""
 
 MOVE_RATE = 1.5
-"""Entries a nanosecond that are brought into order."""
+"""Entries per nanosecond that are moved."""
 
 CALL_TIME = 20.0
-"""Time of a product beside its sums, ns: of the call, and of the branch for the processor."""
+"""Time of a product in addition to its sums, ns: of the call, and of the branch by processor."""
 
 WORTH_SPLITTING = 0.2
-"""Share of zeros from which on a sum is formed of the other entries alone."""
+"""Least share of zeros for which a sum is formed of the nonzero entries alone."""
 
 SUMS = {ca.OP_ADD, ca.OP_SUB}
 SAME_ENTRIES = {ca.OP_RESHAPE, ca.OP_SPARSITY_CAST}
@@ -51,21 +51,21 @@ SPLITS = {ca.OP_HORZSPLIT, ca.OP_VERTSPLIT, ca.OP_DIAGSPLIT}
 
 
 class UnknownInstructionError(Exception):
-    """An instruction that can not be given other operands."""
+    """Error of an instruction that cannot be given other operands."""
 
 
 def program_of(function: ca.Function) -> Program:
-    """A function as steps.
+    """Convert a function to steps.
 
     Raises:
-        UnknownInstructionError: an instruction can only be taken over whole and reads one of several results: CasADi
-            has no way to give that other operands.
+        UnknownInstructionError: CasADi has no way to give an instruction, which reads one of several results, other
+            operands.
     """
     return _Reading(function).program
 
 
 class _Reading:
-    """A function on its way to a program."""
+    """Reader of a function, which makes a program of it."""
 
     def __init__(self, function: ca.Function) -> None:
         self.function = function
@@ -80,7 +80,7 @@ class _Reading:
 
     @property
     def program(self) -> Program:
-        """The program."""
+        """Return the program."""
         function = self.function
         arguments = []
         for i, value in enumerate(self.inputs):
@@ -89,7 +89,7 @@ class _Reading:
         return Program(function.name(), self.origins, arguments, self._needed_steps(), results)
 
     def _needed_steps(self) -> list[Step]:
-        """The steps that results come from: a function that is called may give some that nobody reads."""
+        """Select the steps on which results depend: a called function may have results that are not read."""
         needed = self._things(self.outputs)
         steps = []
         for step in reversed(self.steps):
@@ -99,12 +99,12 @@ class _Reading:
         return steps[::-1]
 
     def _things(self, values: Sequence[Value]) -> set[int]:
-        """The things that hold the entries of these values."""
+        """Indices of the things that contain the entries of these values."""
         numbers = np.concatenate([np.zeros(0, dtype=np.int64), *[value.numbers for value in values]])
         return set(self.origins.holders(numbers))
 
     def _read(self, function: ca.Function, arguments: Sequence[Value]) -> list[Value]:
-        """Results of a function of matrices for these arguments."""
+        """Read the instructions of a function of matrices with these arguments; return its results."""
         outputs = [np.zeros(function.nnz_out(i), dtype=np.int64) for i in range(function.n_out())]
         values = dict[int, Value]()
         for k in range(function.n_instructions()):
@@ -130,7 +130,7 @@ class _Reading:
         return [Value(function.sparsity_out(i), numbers) for i, numbers in enumerate(outputs)]
 
     def _computed(self, code: int, node: ca.MX, operands: Sequence[Value]) -> list[Value]:
-        """Results of an instruction that computes."""
+        """Make the step of an instruction that computes; return its results."""
         if code == ca.OP_MTIMES:
             return [self._product(*operands)]
         if code == ca.OP_CALL:
@@ -155,7 +155,7 @@ class _Reading:
         return self._step(scalar, operands, _length(scalar), called=True)
 
     def _mapped(self, function: ca.Function, operands: Sequence[Value]) -> list[Value]:
-        """Results of a function that is called for one group of columns after the other."""
+        """Make the steps of a function that is mapped over groups of columns; return its results."""
         facts = function.info()
         one = facts["f"]
         calls = []
@@ -172,7 +172,7 @@ class _Reading:
         return results
 
     def _called(self, function: ca.Function, operands: Sequence[Value]) -> list[Value]:
-        """Results of a function that is called as it is."""
+        """Make the step of a function that is not inlined; return its results."""
         length = _length(function) if function.is_a("SXFunction") else np.inf
         return self._step(function, operands, length, called=True)
 
@@ -185,7 +185,7 @@ class _Reading:
         called: bool = False,
         operation: int | None = None,
     ) -> list[Value]:
-        """Results of a step, which is taken once for the same operands."""
+        """Make a step, once for equal operands; return its results."""
         what: object = hash(function)
         if not called:
             # A product of matrices has no operation; it may be asked for with more zeros, or fewer, than it has.
@@ -199,7 +199,7 @@ class _Reading:
         return self._results_of[key]
 
     def _constant(self, matrix: ca.DM) -> Value:
-        """A constant matrix; entries of several that are equal have the same numbers."""
+        """Number the entries of a constant matrix; matrices with equal stored entries share their numbers."""
         entries = matrix.nonzeros()
         key = np.array(entries).tobytes()
         if key not in self._constants:
@@ -209,7 +209,7 @@ class _Reading:
     # Entry by entry
 
     def _elementwise(self, code: int, node: ca.MX, operands: Sequence[Value]) -> Value:
-        """An operation entry by entry, in the order in which its operands lie."""
+        """Make an entrywise operation, in the order of its operands in memory."""
         count = node.nnz()
         if code in SUMS and all(len(operand.numbers) == count for operand in operands):
             return Value(node.sparsity(), self._sum(code, operands[0].numbers, operands[1].numbers))
@@ -224,7 +224,7 @@ class _Reading:
         return Value(node.sparsity(), numbers)
 
     def _sum(self, code: int, left: Numbers, right: Numbers) -> Numbers:
-        """Sums or differences of entries; where there is only one it is the sum itself."""
+        """Make sums or differences of entries; a sum with zero is the other entry."""
         alone = right == 0
         numbers = np.where(alone, left, 0)
         if code == ca.OP_ADD:
@@ -239,12 +239,12 @@ class _Reading:
         return numbers
 
     def _operation(self, code: int, operands: Sequence[Value]) -> Numbers:
-        """Numbers of the results of an operation on columns and scalars."""
+        """Make an operation on columns and scalars; return the numbers of its results."""
         function = entrywise(code, [operand.pattern for operand in operands])
         return self._step(function, operands, function.nnz_out(0), operation=code)[0].numbers
 
     def _order(self, count: int, vectors: Sequence[Numbers]) -> Numbers:
-        """An order of entries in which the fewest must be moved."""
+        """Choose an order of entries in which the fewest have to be moved."""
         as_they_lie = np.arange(count)
         least = sum(self._cost(numbers) for numbers in vectors)
         best = as_they_lie
@@ -258,7 +258,7 @@ class _Reading:
         return best
 
     def _cost(self, numbers: Numbers) -> float:
-        """Entries that must be moved to have them in this order."""
+        """Number of entries that have to be moved for this order."""
         if self.origins.is_whole(numbers) or numbers.tobytes() in self._ordered:
             return 0
         # Of two orders the one that keeps more neighbours: what comes next may have it for nothing.
@@ -266,7 +266,7 @@ class _Reading:
         return len(numbers) + breaks / len(numbers)
 
     def _added(self, node: ca.MX, whole: Value, part: Value) -> Value:
-        """Entries of a part added to some of the whole; several may be added to one."""
+        """Add entries of a part to some entries of the whole; several may be added to one."""
         numbers = whole.numbers.copy()
         places = _taken(node)
         left = np.arange(len(places))
@@ -280,7 +280,7 @@ class _Reading:
     # Products
 
     def _product(self, added: Value, left: Value, right: Value) -> Value:
-        """The sum added + left right."""
+        """Make the sum added + left right."""
         left, right = self._with_constants_multiplied(left, right)
         by_blocks = None if added.numbers.any() else self._product_by_blocks(left, right)
         if by_blocks is None:
@@ -292,7 +292,7 @@ class _Reading:
         return result
 
     def _product_of(self, added: Value, left: Value, right: Value) -> Value:
-        """The sum added + left right, in the quickest way."""
+        """Make the sum added + left right in the fastest way."""
         turned_left, turned_right = left.transposed, right.transposed
         looked_up = self._sparse_time(left, right)
         along_rows = self._time(turned_right, turned_left, looked_up)
@@ -305,7 +305,7 @@ class _Reading:
         return self._multiplied(added.dense, left.dense, right).projected(added.pattern)
 
     def _product_by_blocks(self, left: Value, right: Value) -> Value | None:
-        """The product by the blocks of a constant matrix on the left; None where that is not quicker."""
+        """Make the product by the blocks of a constant left matrix; None if that is not faster."""
         if not self._is_constant(left) or not right.pattern.is_dense():
             return None
         blocks = _blocks(left)
@@ -322,7 +322,7 @@ class _Reading:
         return Value(ca.Sparsity.dense(*numbers.shape), numbers.ravel(order="F"))
 
     def _with_constants_multiplied(self, left: Value, right: Value) -> tuple[Value, Value]:
-        """Factors of a product, of which the constant one may have taken in a constant factor of the other."""
+        """Return the factors of a product after a constant factor of one may be multiplied into the constant other."""
         if self._is_constant(left):
             inner = self._factors(right)
             if inner is not None and self._is_constant(inner[0]):
@@ -333,7 +333,7 @@ class _Reading:
         return left, right
 
     def _taken_in(self, outer: Value, inner: Value, right: Value, factor: Value) -> tuple[Value, Value]:
-        """Factors of outer (inner factor), which are outer and right, or one constant and the factor."""
+        """Factors of outer (inner factor): outer and right, or the product of the constants and the factor."""
         product = self._matrix(outer) @ self._matrix(inner)
         before = _multiplications(outer.dense, right) + _multiplications(inner.dense, factor)
         if product.nnz() * factor.pattern.size2() > before:
@@ -341,7 +341,7 @@ class _Reading:
         return self._constant(product), factor
 
     def _factors(self, value: Value) -> tuple[Value, Value] | None:
-        """Factors of a matrix that is a product, or the transpose of one; None of any other."""
+        """Factors of a matrix that is a product, or the transpose of one; None for any other matrix."""
         turned = value.transposed
         if (value.pattern.shape, value.numbers.tobytes()) in self._factors_of:
             return self._factors_of[value.pattern.shape, value.numbers.tobytes()]
@@ -354,7 +354,7 @@ class _Reading:
         return bool(np.all(self.origins.is_constant(value.numbers)))
 
     def _matrix(self, value: Value) -> ca.DM:
-        """A constant matrix."""
+        """Return the values of a constant matrix."""
         return ca.DM(value.pattern, self.origins.constants(value.numbers))
 
     def _multiplied(self, added: Value, left: Value, right: Value) -> Value:
@@ -370,13 +370,13 @@ class _Reading:
         return self._step(function, operands, 2 * _multiplications(left, right))[0]
 
     def _least_time(self, left: Value, right: Value) -> float:
-        """Time of a product in the quickest way, ns."""
+        """Estimate the time of a product in the fastest way, ns."""
         looked_up = self._sparse_time(left, right)
         along_rows = self._time(right.transposed, left.transposed, looked_up)
         return min(along_rows, self._time(left, right, looked_up), looked_up)
 
     def _time(self, left: Value, right: Value, bound: float) -> float:
-        """Time of a product of which left is made dense, ns; where it is above a bound, a part of it that is so too."""
+        """Estimate the time of a product with a dense left factor, ns; above a bound, any value above the bound."""
         rows = left.pattern.shape[0]
         rate = DENSE_RATE if rows >= LONG else SHORT_RATE
         if rows < 2:
@@ -386,7 +386,7 @@ class _Reading:
         return computed if computed > bound else computed + self._move_time(left.dense, right)
 
     def _sparse_time(self, left: Value, right: Value) -> float:
-        """Time of a product that looks up every entry, ns."""
+        """Estimate the time of a product with a table of every entry, ns."""
         return _multiplications(left, right) / SPARSE_RATE + self._move_time(left, right)
 
     def _move_time(self, *values: Value) -> float:
@@ -394,7 +394,7 @@ class _Reading:
 
 
 def entrywise(code: int, patterns: Sequence[ca.Sparsity]) -> ca.Function:
-    """An operation on dense columns and scalars, entry by entry."""
+    """Make the function of an entrywise operation on dense columns and scalars."""
     return _entrywise(code, tuple(pattern.numel() for pattern in patterns))
 
 
@@ -406,7 +406,7 @@ def _entrywise(code: int, sizes: tuple[int, ...]) -> ca.Function:
 
 
 def _moved(code: int, node: ca.MX, operands: Sequence[Value]) -> list[Value]:
-    """Results of an instruction that only moves entries; none of one that computes."""
+    """Return the results of an instruction that only moves entries; empty for one that computes."""
     first = operands[0]
     numbers = first.numbers
     if code in SPLITS:
@@ -432,10 +432,10 @@ def _moved(code: int, node: ca.MX, operands: Sequence[Value]) -> list[Value]:
 
 
 def _with_operands(code: int, node: ca.MX, operands: Sequence[ca.MX]) -> ca.MX:
-    """The result of an instruction for other operands.
+    """Apply an instruction to other operands.
 
     Raises:
-        UnknownInstructionError: CasADi has no way to put them there.
+        UnknownInstructionError: CasADi has no way to replace its operands.
     """
     result: ca.MX
     if code in REDUCTIONS:
@@ -449,7 +449,7 @@ def _with_operands(code: int, node: ca.MX, operands: Sequence[ca.MX]) -> ca.MX:
 
 
 def _taken(node: ca.MX) -> Numbers:
-    """Entries that an instruction takes out of a matrix, or puts into it."""
+    """Indices of the entries that an instruction reads from a matrix, or writes to it."""
     return np.array(node.mapping().nonzeros(), dtype=np.int64)
 
 
@@ -459,7 +459,7 @@ def _multiplications(left: Value, right: Value) -> int:
 
 
 def _blocks(matrix: Value) -> list[tuple[Numbers, Numbers]]:
-    """Rows and columns of each block that a matrix falls apart into, without rows and columns of zeros."""
+    """Rows and columns of each separate block of a matrix, without rows and columns of zeros."""
     rows, columns = matrix.pattern.shape
     entries = ca.sparsify(ca.DM(matrix.pattern, (matrix.numbers != 0).astype(np.float64)))
     joined = ca.blockcat([[ca.DM.eye(rows), entries], [entries.T, ca.DM.eye(columns)]])
@@ -470,7 +470,7 @@ def _blocks(matrix: Value) -> list[tuple[Numbers, Numbers]]:
 
 
 def _length(function: ca.Function) -> float:
-    """Instructions of a function without a loop; infinite where it is long, or has no such form."""
+    """Number of instructions of a function without loops; infinite if it is long, or has no such form."""
     if function.nnz_in() + function.nnz_out() > SMALL:
         return np.inf
     try:

@@ -11,19 +11,19 @@ FILES = resources.files("cosserat_casadi") / "compiling"
 """The folder of the templates, and of the files in C."""
 
 INCLUDED = re.compile(r"@\{include (\S+)\}\n")
-"""A part of a template that is a template too."""
+"""Pattern of a line that includes another template."""
 
 SECTION = re.compile(r"@\{if (not )?(\w+)\}\n((?:(?!@\{if ).)*?)@\{end\}\n", re.DOTALL)
-"""Lines of a template without sections in them: ``@{if word}`` or ``@{if not word}``, the lines, ``@{end}``."""
+"""Pattern of an innermost section of a template: ``@{if word}`` or ``@{if not word}``, lines, ``@{end}``."""
 
 DEVICE = re.compile(r"(?:SOLVER|@\{MACRO\})_DEVICE ")
-"""The qualifier before functions of a header, which compilers for GPUs need."""
+"""Pattern of the qualifier of functions in a header that compilers for GPUs need."""
 
 
 def render(template: str, words: dict[str, Any]) -> str:
-    """A template of this package with its words filled in; for a GPU where the word ``on_device`` is true.
+    """Fill the words in a template of this package; the text is also for GPUs if the word ``on_device`` is true.
 
-    Parts that it includes, ``@{include part}``, and sections whose word is true, or false as they ask, stay.
+    Templates are included at ``@{include part}``; sections are kept if their word is true, or false for ``if not``.
     """
     on_device = bool(words.get("on_device"))
     text = resource("templates", template, on_device=on_device)
@@ -35,12 +35,12 @@ def render(template: str, words: dict[str, Any]) -> str:
 
 
 def fill(text: str, words: Mapping[str, Any]) -> str:
-    """The text of a template with its words filled in: ``@{word}``."""
+    """Fill the words ``@{word}`` in the text of a template."""
     return re.sub(r"@\{(\w+)\}", lambda match: str(words[match[1]]), text)
 
 
 def resource(folder: str, file: str, *, on_device: bool = False) -> str:
-    """Text of a file of this package; without the qualifiers of functions for a GPU, unless it is for one."""
+    """Read a file of this package, without the qualifiers of functions for GPUs unless ``on_device``."""
     text = (FILES / folder / file).read_text(encoding="utf-8")
     return text if on_device else DEVICE.sub("", text)
 

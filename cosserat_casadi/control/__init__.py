@@ -1,4 +1,4 @@
-"""Inverse problems and optimal control: what stands around the equations of rest or of motion, held as constraints."""
+"""Inverse problems and optimal control, with the equations of statics or of motion as constraints."""
 
 from cosserat_casadi.control.condensing import Condensed, Condensing, Horizon
 from cosserat_casadi.control.embedding import Lifted, embedded, lifted

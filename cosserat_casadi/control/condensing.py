@@ -1,9 +1,9 @@
-"""A horizon of stages in motion, linearised, with its states as functions of the rates of the inputs alone.
+"""Linearisation of a horizon of stages in motion, with states as functions of the rates of the inputs alone.
 
-Newton's method on all stages at once takes the unknowns of each from its linearised equations of motion, and the
-states from one stage to the next: lifted Newton's method with condensing, J. Albersmeyer and M. Diehl, *SIAM J. Optim.*
-20 (2010) 1655, and H. G. Bock, K.-J. Plitt, *IFAC Proceedings Volumes* 17 (1984) 1603. The unknowns of the
-quadratic problem are the rates: a few numbers a stage, however many unknowns the rods have.
+Newton's method on all stages at once eliminates the unknowns of each stage by its linearised equations of motion, and
+the states from one stage to the next: lifted Newton's method with condensing, J. Albersmeyer and M. Diehl, *SIAM J.
+Optim.* 20 (2010) 1655, and H. G. Bock, K.-J. Plitt, *IFAC Proceedings Volumes* 17 (1984) 1603. The unknowns of the
+quadratic problem are the rates: a few numbers per stage, for any number of unknowns of the rods.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from cosserat_casadi.motion.repeated_call import RepeatedCall
 
 @dataclass(frozen=True)
 class Horizon:
-    """A guess of a motion over N stages; its stages need not meet, and its equations need not hold.
+    """A guess of a motion over N stages, whose stages need not be continuous and whose equations need not hold.
 
     Attributes:
-        states: states at the ends of all stages, shape (N + 1, state_size); the first is a datum, the rest are guesses.
-        unknowns: of all stages, shape (N, unknowns_size).
+        states: states at the ends of all stages, shape (N + 1, state_size); all but the first are guesses.
+        unknowns: unknowns of all stages, shape (N, unknowns_size).
     """
 
     states: FloatArray
@@ -41,11 +41,10 @@ class Condensed:
         guess: the guess.
         residual: largest entry of the equations of motion, and of the gaps between stages, at the guess.
         states_by_rates: ∂ states / ∂ steered rates of all stages, shape (N + 1, state_size, N · steered).
-        states_by_inputs: ∂ states / ∂ all inputs at the beginning, which then move on from there, shape (N + 1,
-            state_size, inputs).
-        states_shift: change of the states that closes the guess at its own rates, shape (N + 1, state_size).
+        states_by_inputs: ∂ states / ∂ all inputs at the beginning, for fixed rates, shape (N + 1, state_size, inputs).
+        states_shift: change of the states that closes the guess at its rates, shape (N + 1, state_size).
         unknowns_by_rates: ∂ unknowns / ∂ steered rates of all stages, shape (N, unknowns_size, N · steered).
-        unknowns_shift: change of the unknowns that closes the guess at its own rates, shape (N, unknowns_size).
+        unknowns_shift: change of the unknowns that closes the guess at its rates, shape (N, unknowns_size).
     """
 
     guess: Horizon
@@ -57,10 +56,10 @@ class Condensed:
     unknowns_shift: FloatArray
 
     def moved(self, change: FloatArray) -> Horizon:
-        """The motion, to first order, when the steered rates change.
+        """Return the motion, to first order, for changed steered rates.
 
         Args:
-            change: of the rates, stage by stage, shape (N · steered,), units per second.
+            change: change of the rates, stage by stage, shape (N · steered,), units per second.
         """
         states = self.guess.states + self.states_shift + self.states_by_rates @ change
         unknowns = self.guess.unknowns + self.unknowns_shift + self.unknowns_by_rates @ change
@@ -68,7 +67,7 @@ class Condensed:
 
 
 class Condensing:
-    """Linearises a horizon.
+    """Lineariser of a horizon.
 
     Args:
         stage: every stage of the horizon.
@@ -77,7 +76,7 @@ class Condensing:
         steered: indices of the inputs whose rates are decision variables; the other inputs move as prescribed.
 
     Raises:
-        ValueError: there is no stage, or no such input.
+        ValueError: there is no stage, or an index is not that of an input.
     """
 
     def __init__(self, stage: MotionStage, equations: StageEquations, stages: int, steered: Sequence[int]) -> None:
@@ -107,11 +106,11 @@ class Condensing:
             guess: states and unknowns.
             inputs: inputs at the beginnings of all stages, shape (N, inputs).
             inputs_rate: rates of the inputs in the stages, shape (N, inputs), units per second.
-            p: stacked parameters of all stages, of a stage that takes them, shape (N, parameters).
+            p: stacked parameters of all stages, if a stage takes them, shape (N, parameters).
 
         Raises:
-            ValueError: an array has another shape.
-            numpy.linalg.LinAlgError: the unknowns of a stage do not follow from its equations.
+            ValueError: an array has a wrong shape.
+            numpy.linalg.LinAlgError: the equations of a stage do not determine its unknowns.
         """
         given = np.zeros((self._stages, 0)) if p is None else p
         self._check(guess, inputs, inputs_rate, given)
@@ -154,10 +153,10 @@ class Condensing:
         )
 
     def _check(self, guess: Horizon, inputs: FloatArray, inputs_rate: FloatArray, p: FloatArray) -> None:
-        """Refuse arrays of other shapes: entries would be read at wrong places.
+        """Refuse arrays of wrong shapes, whose entries would be misread.
 
         Raises:
-            ValueError: with all arrays whose shapes are not the expected ones.
+            ValueError: arrays have wrong shapes; the error lists all of them.
         """
         stage = self._stage
         moving = (self._stages, stage.model.inputs.size)
@@ -179,7 +178,7 @@ class Condensing:
     def _linearised(
         self, guess: Horizon, inputs: FloatArray, inputs_rate: FloatArray, p: FloatArray
     ) -> list[FloatArray]:
-        """Residual of the equations of all stages and their derivatives, each of shape (N, unknowns_size, columns)."""
+        """Evaluate the residual of all stages and its derivatives, each of shape (N, unknowns_size, columns)."""
         parameters = [p] if p.size else []
         arguments = [guess.states[:-1], guess.unknowns, inputs, *parameters, inputs_rate]
         columns = self._evaluate(*[argument.ravel() for argument in arguments])

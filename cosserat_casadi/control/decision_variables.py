@@ -1,4 +1,4 @@
-"""The inputs that an inverse problem may change: which they are, their ranges, and how large a change of each is."""
+"""The inputs that an inverse problem may change: their choice, their ranges, and scales of their changes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from cosserat_casadi.model.input_bounds import narrowed
 from cosserat_casadi.model.system_functions import SystemFunctions
 
 UNFELT = 1e-9
-"""Derivative of the residual with an input, relative to the largest, below which it says nothing of its scale."""
+"""Derivative of the residual by an input, over the largest one, below which it does not set the scale."""
 
 
 @dataclass(frozen=True)
@@ -24,9 +24,9 @@ class DecisionVariables:
     """Inputs that may change, n entries of the stacked inputs.
 
     Attributes:
-        indices: of the entries in the stacked inputs, shape (n,).
-        lower: least values, shape (n,), -inf where there is none.
-        upper: largest values, shape (n,), inf where there is none.
+        indices: indices of the entries in the stacked inputs, shape (n,).
+        lower: least values, shape (n,), -inf without a bound.
+        upper: largest values, shape (n,), inf without a bound.
     """
 
     indices: npt.NDArray[np.int64]
@@ -34,7 +34,7 @@ class DecisionVariables:
     upper: FloatArray
 
     def clipped(self, inputs: FloatArray) -> FloatArray:
-        """Stacked inputs with the decision variables brought into their ranges."""
+        """Clip the decision variables among stacked inputs to their ranges."""
         inside = inputs.copy()
         current = inputs[self.indices]
         inside[self.indices] = np.clip(current, self.lower, self.upper)
@@ -42,11 +42,10 @@ class DecisionVariables:
 
 
 def decision_variables(model: SystemFunctions) -> DecisionVariables:
-    """The inputs that a scene asks for: those it bounds, or else those it lists.
+    """Choose the decision variables of a scene: the inputs that it bounds, or else the inputs that it lists.
 
-    An input that a scene lists without bounding it, beside others that it bounds, keeps the scene's value: it is
-    listed for a controller, as a payload is. A tension is not below zero and a length not below a thousandth of the
-    scene's, whatever the bounds.
+    If a scene bounds some inputs, a listed input without bounds keeps the scene's value: it is listed for a controller,
+    such as a payload. For any bounds, tensions are at least zero, and lengths at least a thousandth of the scene's.
 
     Raises:
         SceneError: the scene lists no inputs and bounds none.
@@ -71,10 +70,10 @@ def decision_variables(model: SystemFunctions) -> DecisionVariables:
 
 
 def scales(model: SystemFunctions, variables: DecisionVariables, start: Equilibrium[Any]) -> FloatArray:
-    """A change of each decision variable that matters, shape (n,), in its unit.
+    """Scale of each decision variable, a change that matters, in its unit, shape (n,).
 
-    Half the range where there is one; else what changes the dimensionless balance by one unit; else the value itself,
-    or the length of the rod whose base moves.
+    It is half the range, if there is one; else the change that alters the dimensionless balance by one unit; else the
+    value itself, or the length of the rod whose base moves.
     """
     given = given_entries(start.model)
     # In exact contact the model of the start has elements that end at the contacts.
@@ -101,7 +100,7 @@ def _chosen_names(model: SystemFunctions) -> list[str]:
 
 
 def _own_sizes(model: SystemFunctions, inputs: FloatArray) -> FloatArray:
-    """How large an input is by itself, where nothing else tells, shape (inputs,)."""
+    """Scales of the inputs by their own values, if nothing else determines them, shape (inputs,)."""
     sizes = np.where(inputs != 0.0, np.abs(inputs), 1.0)
     # The base of a rod may well be at the origin, so its value tells nothing.
     lengths = {f"{rod.name}.base.position": rod.length for rod in model.scene.rods}

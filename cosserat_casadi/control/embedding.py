@@ -1,9 +1,9 @@
-"""A rod in an optimisation problem: its unknowns lifted into the problem, or solved for inside by a rootfinder.
+"""A rod in an optimisation problem: its unknowns are variables of the problem, or solved for by a rootfinder.
 
-*Lifted* gives the optimiser the unknowns as variables and the equilibrium as constraints: no inner loop, and it may
-pass through states out of balance. *Embedded* keeps the problem small: x is a function of the inputs, the root that
-Newton's method finds from a start, with derivatives by the implicit-function theorem. CasADi's rootfinders report
-success where they have none, so the root comes with its own residual, which a problem must hold near zero.
+*Lifted* gives the optimiser the unknowns as variables and the equilibrium as constraints: there is no inner loop, and
+the optimiser may pass through states out of balance. *Embedded* keeps the problem small: x is a function of the inputs,
+the root that Newton's method finds from a start, with derivatives by the implicit function theorem. CasADi's
+rootfinders report success even on failure, so the root comes with its residual, which a problem must hold near zero.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ class Lifted:
 
     Attributes:
         x: the unknowns, symbols of the problem, shape (size,).
-        residual: what the problem holds at zero, shape (size,).
-        start: a value of x to start from, shape (size,).
+        residual: residual that the problem must constrain to zero, shape (size,).
+        start: initial guess of x, shape (size,).
     """
 
     x: Matrix
@@ -46,15 +46,15 @@ def lifted(
     near: Solution | None = None,
     parameters: Matrix | None = None,
 ) -> Lifted:
-    """A state of a model whose unknowns are variables of the problem.
+    """Make a state of a model whose unknowns are variables of the problem.
 
     Args:
-        model: the model; of a scene in exact contact that which :func:`relaxed_contact` makes of it.
+        model: the model; for a scene in exact contact the one that :func:`relaxed_contact` makes of it.
         x: variables for its unknowns, shape (model.size,): ``MX.sym`` or ``opti.variable``.
         inputs: stacked inputs, any expressions, shape (model.inputs.size,).
-        near: an equilibrium to start from; the unloaded rods by default.
+        near: an equilibrium as initial guess; by default the unloaded rods.
         parameters: stacked parameters, any expressions, shape (model.parameters.size,): variables or parameters of the
-            problem; by default the scene's values. Of relaxed contact the smoothing and the abscissae.
+            problem; by default the scene's values. For relaxed contact, the smoothing and the abscissae.
     """
     if isinstance(model, RelaxedContact):
         p = model.defaults if parameters is None else parameters
@@ -71,21 +71,21 @@ def lifted(
 def embedded(
     model: Model | RelaxedContact, near: Solution, iterations: int = 50, *, parameters: bool = False
 ) -> ca.Function:
-    """The equilibrium as a function of the inputs, on the branch of a solution.
+    """Make the equilibrium as a function of the inputs, on the branch of a solution.
 
-    Newton's method from the unknowns of that solution, whatever the inputs: exact first and second derivatives.
+    Newton's method starts from the unknowns of that solution for all inputs; first and second derivatives are exact.
 
     Args:
-        model: the model; of a scene in exact contact that which :func:`relaxed_contact` makes of it.
-        near: the equilibrium that it starts from.
+        model: the model; for a scene in exact contact the one that :func:`relaxed_contact` makes of it.
+        near: the equilibrium from which it starts.
         iterations: most steps.
-        parameters: whether the parameters of the scene, if it names some, are an argument: by default they have the
-            scene's values. Parameters of relaxed contact always are an argument.
+        parameters: whether the parameters of the scene, if it names some, are an argument; by default they have the
+            scene's values. Parameters of relaxed contact are always an argument.
 
     Returns:
         inputs, or (inputs, p), ↦ (x, excess): ``excess`` is the squared relative residual over its squared tolerance.
-        Only where it is at most 1 is x an equilibrium, and only there have the derivatives a meaning; it is NaN where
-        the residual is. A problem holds it by a constraint; ``lifted`` needs none.
+        Only if it is at most 1 is x an equilibrium, with meaningful derivatives; it is NaN if the residual is. A
+        problem needs a constraint on it; ``lifted`` needs none.
     """
     if isinstance(model, RelaxedContact):
         start = model.near(near)

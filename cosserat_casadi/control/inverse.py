@@ -1,14 +1,13 @@
-"""The inverse problem: values of inputs for which the equilibrium meets the targets of the scene.
+"""The inverse problem: inputs for which the equilibrium meets the targets of the scene.
 
-The unknowns of the rods and the decision variables are found together, the equilibrium being constraints ("lifted"), by
-an interior-point method with exact derivatives. What the optimiser ends at is only a proposal: the equilibrium at its
-inputs is computed anew and judged like any other.
+The unknowns of the rods and the decision variables are found together by an interior-point method with exact
+derivatives, with the equilibrium as constraints ("lifted"). The result of the optimiser is only a proposal: the
+equilibrium at its inputs is computed anew and judged like any other.
 
-Rods in exact contact ask for another way, least squares over equilibria that are each solved with their contacts. The
-errors of the targets are functions of the inputs that are smooth while the contacts stay, and have a kink where they
-change. Each turn takes the shortest change of the inputs that ends the linearised errors, no farther than was believed
-before, and keeps the equilibrium there if it is nearer to the targets. Where other contacts hold there and it is not,
-the next turn tries with the derivatives of that side.
+Rods in exact contact need another method: least squares over equilibria that are each solved with their contacts. The
+errors of the targets are smooth functions of the inputs while contacts persist, with kinks where they change. Each
+iteration takes a damped change of the inputs that reduces the linearised errors, and keeps the equilibrium there if it
+is nearer to the targets. If it is not, and has other contacts, the next iteration uses the derivatives of that side.
 """
 
 from __future__ import annotations
@@ -40,28 +39,28 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.system_functions import SystemFunctions
 
 MOST_TURNS = 20
-"""Equilibria that are tried from one start."""
+"""Most equilibria that are tried from one start."""
 
 FIRST_DAMPING = 1e-1
-"""Weight of the square of the first change of the inputs, in their scales, beside the squares of the errors."""
+"""Weight of the square of the first change of the inputs, in their scales, relative to the squares of the errors."""
 
 MOST_DAMPING = 1e8
-"""Weight of the square of a change of the inputs from which on a search ends that comes no nearer."""
+"""Weight of the square of a change of the inputs at which a search without progress ends."""
 
 EASED = 10.0
-"""Factor by which that weight falls after a turn that has come nearer."""
+"""Factor by which that weight falls after an iteration that has come nearer."""
 
 TIGHTENED = 5.0
-"""Factor by which that weight grows after a turn that has come no nearer."""
+"""Factor by which that weight grows after an iteration that has come no nearer."""
 
 NEARER = 0.1
-"""Share of the expected decrease of the error that a turn has to reach."""
+"""Least share of the predicted decrease of the error for an iteration to count as nearer."""
 
 STARTS = 8
-"""Further starts, scattered in the bounds, where the first leaves a gap."""
+"""Number of further starts, scattered within the bounds, if the first leaves a target error."""
 
 LONGEST = 60.0
-"""Seconds after which a search begins no further start, and says so: on many tendons one alone may take a minute."""
+"""Time, s, after which a search begins no further start, and says so; with many tendons one start may take a minute."""
 
 
 def inverse(
@@ -72,10 +71,10 @@ def inverse(
     starts: int = STARTS,
     estimate_error: bool = True,
 ) -> Inverse:
-    """Inputs for which a model's equilibrium meets the targets of its scene, as the public ``inverse`` describes them.
+    """Find inputs for which a model's equilibrium meets the targets of its scene; see the public ``inverse``.
 
     Raises:
-        SceneError: as the public ``inverse`` raises it.
+        SceneError: the scene or a value is refused, as by the public ``inverse``.
     """
     model = model.at()
     check_targets(model.scene.targets)
@@ -91,7 +90,7 @@ def inverse(
 def inverse_problem(
     model: SystemFunctions, targets: tuple[scenes.Target, ...], start: Equilibrium[Any], stable: bool
 ) -> SoughtInputs:
-    """The problem of a model, ready for searches.
+    """Make the problem of a model, ready for searches.
 
     Args:
         model: as in :func:`inverse`.
@@ -118,7 +117,7 @@ def check_targets(targets: tuple[scenes.Target, ...]) -> None:
 
 
 def first_solution(model: SystemFunctions) -> Equilibrium[Any]:
-    """The equilibrium at the scene's own inputs, brought into bounds: where a search starts."""
+    """Solve for the equilibrium at the scene's own inputs, clipped to the bounds, from which a search starts."""
     first_inputs = decision_variables(model).clipped(model.pack())
     return solve(model, model.inputs.unpack(first_inputs), estimate_error=False)
 
@@ -130,20 +129,20 @@ def search(
     starts: int,
     report: Callable[[str], None] | None = None,
 ) -> Inverse:
-    """The inverse problem from a start, and from scattered ones, without a verdict on its targets.
+    """Solve the inverse problem from a start, and from scattered ones, without a verdict on its targets.
 
-    No further start begins after LONGEST; the result says how many were left out.
+    No further start begins after LONGEST; the result contains the number of omitted starts.
 
     Args:
         problem: the problem.
         start: equilibrium of its model to start from.
         stable: as in :func:`inverse`.
-        starts: as there.
-        report: told which of the further starts begins, and how far the targets are missed so far.
+        starts: number of further starts, as in :func:`inverse`.
+        report: callback with the number of the next start, and the target error so far.
     """
 
     def rank(end: Inverse) -> tuple[bool, bool, float]:
-        """Rank of an end, less is better: an equilibrium, a stable one if that is wanted, a smaller target error."""
+        """Rank of a result, less is better: by equilibrium, stability if it is wanted, and target error."""
         return not end.solution.converged, stable and end.unstable, gap_left(end)
 
     began = monotonic()
@@ -173,7 +172,7 @@ def search_near(
     starts: int,
     report: Callable[[str], None] | None = None,
 ) -> Inverse:
-    """Search from an equilibrium near the targets: by Newton's method, where that leads there, else :func:`search`."""
+    """Search from an equilibrium near the targets, by Newton's method if it converges, else by :func:`search`."""
     if isinstance(problem, LiftedProblem):
         found = followed(problem, start)
         if found is not None and found.met and not found.unstable:
@@ -184,12 +183,12 @@ def search_near(
 
 
 def _from_start(problem: SoughtInputs, start: Equilibrium[Any], change: FloatArray, stable: bool) -> Inverse:
-    """The search from one start.
+    """Search from one start.
 
     Args:
         problem: the problem.
-        start: a solve at the inputs that it starts from.
-        change: these inputs as changes from the origin, in their scales, shape (n,).
+        start: solution at the initial inputs.
+        change: initial inputs as changes from the origin, in their scales, shape (n,).
         stable: whether a stable equilibrium is wanted.
     """
     result = problem.solve(start, change)
@@ -199,7 +198,7 @@ def _from_start(problem: SoughtInputs, start: Equilibrium[Any], change: FloatArr
 
 
 def _from_relaxed(problem: SoughtInputs, result: Inverse) -> Inverse:
-    """The search once more, from where the rod relaxes to; the first result where that leads to nothing stable."""
+    """Search again from the equilibrium to which the rod relaxes; return the first result if that is not stable."""
     relaxed = solve(problem.model, result.values, start=result.solution, stable=True, estimate_error=False)
     if not relaxed.stable:
         return result
@@ -231,10 +230,10 @@ class _AtPlaces:
 
 @dataclass(frozen=True)
 class ContactProblem(SoughtInputs):
-    """Decision variables alone: the unknowns follow by solves."""
+    """The inverse problem in the decision variables alone; the unknowns follow by solves with contacts."""
 
     def solve(self, start: Equilibrium[Any], change: FloatArray) -> Inverse:
-        """Damped steps between equilibria, each with its own contacts."""
+        """Take damped steps between equilibria, each with its own contacts."""
         here = self._at(start, change)
         if not here.solution.converged:
             return here
@@ -268,9 +267,9 @@ class ContactProblem(SoughtInputs):
         return self.judged(start if start.converged else None, change, rounds=0)
 
     def _linearised(self, solution: Equilibrium[Any]) -> tuple[FloatArray, FloatArray] | None:
-        """Errors of an equilibrium, shape (m,), and what changes of n inputs in their scales move them by, (m, n).
+        """Errors of an equilibrium, shape (m,), and their derivatives by n inputs in their scales, shape (m, n).
 
-        None where its contacts leave it no derivatives.
+        The result is None if its contacts allow no derivatives.
         """
         assert isinstance(solution, Solution), "rods alone touch obstacles"
         equations, z = equations_at(solution)
@@ -294,7 +293,7 @@ class ContactProblem(SoughtInputs):
 def contact_problem(
     model: SystemFunctions, targets: tuple[scenes.Target, ...], start: Solution, stable: bool
 ) -> ContactProblem:
-    """The problem of a model of rods in exact contact, with the arguments of :func:`lifted_problem`."""
+    """Make the problem of a model of rods in exact contact, with the arguments of :func:`lifted_problem`."""
     variables = decision_variables(model)
     given = given_inputs(start.model, start.inputs)
     if stable:

@@ -1,4 +1,4 @@
-"""The inverse problem of a scene on a discretisation that meets its tolerance at the inputs found."""
+"""The inverse problem of a scene on a discretisation that meets its tolerance at the resulting inputs."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import CountProgress, Report
 
 Targets = tuple[scenes.Target, ...]
-"""Targets that are to be met at once."""
+"""Targets that are to be met simultaneously."""
 
 
 @overload
@@ -51,14 +51,14 @@ def inverse(
 
 
 def inverse(subject: scenes.Scene | SystemFunctions, **options: Any) -> Inverse:
-    """Inputs for which a scene, or a model, meets its targets.
+    """Find inputs for which a scene, or a model, meets its targets.
 
-    Of several solutions it is one near the scene's own inputs. Where targets cannot all be met, within the bounds or
-    at all, the weighted sum of squared target errors is least, as far as a local method can tell.
+    Of several solutions, one near the scene's own inputs is found. If the targets cannot all be met, within the bounds
+    or at all, the weighted sum of squared target errors has a local minimum.
 
-    A scene has modes and nodes that meet its tolerance at the inputs that result: the equilibrium there is solved with
-    more modes too, and where that moves the poses by more than half of the tolerance, the search goes on with these
-    modes. Where the scene fixes modes or nodes, the error is only estimated: targets count as met where the target
+    For a scene, modes and nodes are chosen to meet its tolerance at the resulting inputs: the equilibrium there is also
+    solved with more modes, and if that moves the poses by more than half of the tolerance, the search goes on with
+    these modes. If the scene fixes modes or nodes, the error is only estimated: targets count as met if the target
     error and this estimate are both within the tolerance.
 
     Args:
@@ -66,13 +66,13 @@ def inverse(subject: scenes.Scene | SystemFunctions, **options: Any) -> Inverse:
         options: named as follows.
         stable: whether a stable equilibrium is wanted: an unstable one is relaxed and the search goes on from there,
             once. For loads that have a potential.
-        report: told the discretisation; of a scene.
-        start: of a model, like all that follow: equilibrium to start from; by default the one at the scene's own
-            inputs, brought into bounds.
-        starts: further starts where a target error remains: scattered, by a fixed seed, over the inputs that are
-            bounded on both sides; the best end counts. 0 for none.
-        estimate_error: whether the error that modes and nodes leave at the resulting inputs is estimated; targets count
-            as met where it is within the tolerance too.
+        report: callback with the discretisation; for a scene.
+        start: equilibrium to start from, by default the one at the scene's own inputs, clipped to the bounds; for a
+            model, like all further options.
+        starts: number of further starts if a target error remains: scattered, by a fixed seed, over the inputs that are
+            bounded on both sides; the best result counts. 0 for none.
+        estimate_error: whether the error by modes and nodes at the resulting inputs is estimated; targets then count as
+            met only if it is within the tolerance too.
 
     Raises:
         SceneError: the scene has no targets, or names no inputs to find; or a stable equilibrium is wanted under loads
@@ -92,17 +92,17 @@ def inverse_rows(
     report: Report | None = None,
     progress: CountProgress | None = None,
 ) -> list[Inverse]:
-    """Inputs for each of many sets of targets, every model built once for all rows that need it.
+    """Find inputs for each of many sets of targets, with every model built once for all rows that need it.
 
-    A row starts from the nearest one that has met its targets, the first from the scene's own inputs; rows are solved
-    in the order of nearness. Modes and nodes are chosen as in :func:`inverse`, for each row.
+    A row starts from the nearest row that has met its targets, the first one from the scene's own inputs; rows are
+    solved in order of nearness. Modes and nodes are chosen for each row as in :func:`inverse`.
 
     Args:
         scene: a validated scene.
-        rows: sets of targets, at least one; of the same kinds and for the same sections and bodies in every row.
-        stable: as in :func:`inverse`.
-        report: told the discretisation.
-        progress: told how many rows are settled, and of how many.
+        rows: sets of targets, at least one, with equal kinds, sections and bodies in every row.
+        stable: whether stable equilibria are wanted, as in :func:`inverse`.
+        report: callback with the discretisation.
+        progress: callback with the numbers of finished rows and of all rows.
 
     Raises:
         SceneError: as in :func:`inverse`.
@@ -165,7 +165,7 @@ def _searched(
     progress: CountProgress | None,
     report: Report | None,
 ) -> dict[int, Inverse]:
-    """The search of every row on the first discretisation, each from its nearest neighbour that is met."""
+    """Search for every row on the first discretisation, each from its nearest neighbour that met its targets."""
     first = first_solution(model)
     problem = inverse_problem(model, rows[0], first, stable)
     lengths = np.array([length_of(model, target) for target in rows[0]])
@@ -197,7 +197,7 @@ def _searched(
 def _refined(
     model: SystemFunctions, before: Mapping[int, Inverse], starts: Mapping[int, Equilibrium[Any]], stable: bool
 ) -> dict[int, Inverse]:
-    """The search of rows on a finer discretisation, each from its own end on the coarser one."""
+    """Search for rows on a finer discretisation, each from its result on the coarser one."""
     first_row, first_start = next(iter(starts.items()))
     problem = inverse_problem(model, before[first_row].targets, first_start, stable)
     found = {}
@@ -212,7 +212,7 @@ def _refined(
 
 
 def _distance(gaps: Sequence[TargetMiss], lengths: FloatArray) -> float:
-    """How far a solution is from targets: the largest of distances over the lengths of their rods, and angles."""
+    """Distance of a solution from targets: the largest of distances over the lengths of their rods, and angles, rad."""
     distances = [0.0]
     for gap, length in zip(gaps, lengths, strict=True):
         distances += [gap.position / length, gap.angle or 0.0]
@@ -220,15 +220,15 @@ def _distance(gaps: Sequence[TargetMiss], lengths: FloatArray) -> float:
 
 
 def _distances(wanted: FloatArray, here: FloatArray, lengths: FloatArray) -> FloatArray:
-    """How far the poses that rows want are from the poses of one row: distances over lengths, or angles, rad.
+    """Distances of the wanted poses of rows from the poses of one row, over lengths, or angles, rad.
 
     Args:
-        wanted: as in :func:`wanted_poses`, shape (rows, targets, 7).
+        wanted: wanted poses, as in :func:`wanted_poses`, shape (rows, targets, 7).
         here: poses of the one row, shape (targets, 7).
         lengths: lengths of the rods, shape (targets,), m.
 
     Returns:
-        the largest over the targets of each row, shape (rows,).
+        the largest distance over the targets of each row, shape (rows,).
     """
     distances = np.linalg.norm(wanted[:, :, :3] - here[:, :3], axis=2) / lengths
     largest = distances.max(axis=1)
@@ -241,7 +241,7 @@ def _distances(wanted: FloatArray, here: FloatArray, lengths: FloatArray) -> Flo
 
 
 def _error_within(result: Inverse) -> bool:
-    """Whether the estimated error is within the tolerance: of the tips, and where the targets are."""
+    """Whether the estimated errors of the tips, and of the sections of targets, are within the tolerance."""
     solution = result.solution
     tolerance = solution.model.scene.accuracy.tolerance
     at_targets = [TARGET_KINDS[target.kind].model_error(target, solution) for target in result.targets]
@@ -250,7 +250,7 @@ def _error_within(result: Inverse) -> bool:
 
 
 def _unresolved(result: Inverse) -> Inverse:
-    """The result as one that is not of the rod; its gaps are gaps of the discrete model."""
+    """Mark a result as unresolved; its target errors are those of the discrete model."""
     solution = result.solution.unresolved()
     if solution.largest_error is not None:
         message = f"{solution.message} The estimated error is {solution.largest_error:.2g} of the length."

@@ -1,4 +1,4 @@
-"""The discretisations that an inverse problem is solved on, one after the other: modes of rods, steps of tubes."""
+"""The sequence of discretisations of an inverse problem: modes of rods, or steps of tubes."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from cosserat_casadi.tubes.tube_solution import TubeSolution
 from cosserat_casadi.tubes.tube_solve import FEWEST_STEPS, MOST_STEPS, error_beside, finer_than, model_of, solution_near
 
 MODES_OF_SHORT = (2, 4)
-"""Modes of the first levels of rods in short elements: each is a factor on the unknowns of the optimiser."""
+"""Modes of the first levels for rods with short elements, as each mode multiplies the optimiser's unknowns."""
 
 
 class Levels(Protocol):
@@ -30,7 +30,7 @@ class Levels(Protocol):
 
     @property
     def counts(self) -> Sequence[int]:
-        """Modes or steps of the levels that verify."""
+        """Modes or steps of the levels that verify others."""
 
     def first(self) -> SystemFunctions:
         """The model of the first level."""
@@ -56,7 +56,7 @@ class LevelsOfRods:
 
     @property
     def counts(self) -> tuple[int, ...]:
-        """Modes of the levels that verify."""
+        """Modes of the levels that verify others."""
         return self._modes[1:]
 
     def first(self) -> Model:
@@ -67,11 +67,11 @@ class LevelsOfRods:
 
     @property
     def _modes(self) -> tuple[int, ...]:
-        """Modes of all levels, the first of which nothing verifies."""
+        """Modes of all levels; the first level verifies no other."""
         return verified_modes(self.scene, MODES_OF_SHORT)
 
     def finer(self, count: int, model: Model, solutions: Sequence[Solution]) -> Model:
-        """The model of a level, on intervals enough for how far the rods turned on the level before."""
+        """Make the model of a level, with enough intervals for the rotations of the rods on the level before."""
         if self.scene.accuracy.fixed:
             most = max(max(discretisation.modes) for discretisation in model.discretisation.values())
             count = max(count, most + FINER_MODES)
@@ -99,13 +99,13 @@ class LevelsOfRods:
 
 @dataclass(frozen=True)
 class LevelsOfTubes:
-    """Levels of steps, each with twice the steps of the level before; the unknowns do not depend on them."""
+    """Levels of steps, each with twice the steps of the level before; the unknowns do not depend on the steps."""
 
     scene: scenes.Scene
 
     @property
     def counts(self) -> tuple[int, ...]:
-        """Steps of the levels that verify."""
+        """Steps of the levels that verify others."""
         doublings = (MOST_STEPS // FEWEST_STEPS).bit_length()
         return tuple(FEWEST_STEPS * 2**power for power in range(1, doublings))
 
@@ -138,7 +138,7 @@ def levels_of(scene: scenes.Scene) -> Levels:
 
 
 def with_error(solution: Equilibrium[Any]) -> Equilibrium[Any]:
-    """An equilibrium of a model with the estimate of its error, its message as it is."""
+    """Add the error estimate to an equilibrium of a model, and keep its message."""
     if isinstance(solution, Solution):
         return estimated(solution) if not solution.model.scene.touches_exactly else estimated_in_contact(solution)
     assert isinstance(solution, TubeSolution)

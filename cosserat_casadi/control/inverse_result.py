@@ -1,4 +1,4 @@
-"""The end of an inverse problem, and its verdict: whether the targets are met, in words too."""
+"""Result of an inverse problem, with the verdict on its targets, also in words."""
 
 from __future__ import annotations
 
@@ -23,36 +23,36 @@ from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.result import Result
 
 UNSTABLE = "Not stable: a real rod leaves this equilibrium. "
-"""How the message of an unstable result begins."""
+"""First sentence of the message of an unstable result."""
 
 NOT_STABLE = " No stable equilibrium was found that comes as near."
-"""How the message of an unstable result ends where a stable one was wanted."""
+"""Last sentence of the message of an unstable result if a stable one was wanted."""
 
 
 BARRED = (
     " The search led through an obstacle or a rod: these are its inputs, with rods on the side on which they began. "
     "Other starts may lead to the targets."
 )
-"""Sentence where the optimiser ended behind an obstacle or a rod."""
+"""Sentence of a result whose optimiser ended behind an obstacle or a rod."""
 
 
 @dataclass(frozen=True, repr=False)
 class Inverse(Result):
-    """Inputs found for targets.
+    """Inputs that were found for targets.
 
     Attributes:
-        solution: equilibrium at the inputs found; its message says whether the targets are met.
+        solution: equilibrium at the inputs; its message says whether the targets are met.
         targets: targets of the scene, or of a row of a table.
-        gaps: how far each target is missed, in their order.
-        met: whether the equilibrium was found and every gap is within the scene's tolerance, and where it was
-            estimated the error of the model too; where a stable one was wanted, whether it is that as well.
-        rounds: runs of the optimiser, from all starts together and on all discretisations; 0 where Newton's method has
-            met the targets from a neighbour.
-        starts: starts that were tried, 1 where the first has met the targets.
-        starts_left_out: further starts that the search had no time for.
-        cut_short: whether the optimiser ran out of time: the inputs are where it was, which need not be a minimum.
-        barred: whether the optimiser ended behind a smooth obstacle or a rod: the equilibrium is that on this side.
-        at_bounds: decision variables that ended at a bound, by name.
+        gaps: errors of the targets, in their order.
+        met: whether the equilibrium was found, every target error is within the scene's tolerance, so is the error of
+            the model if it was estimated, and the equilibrium is stable if that was wanted.
+        rounds: number of runs of the optimiser, from all starts and on all discretisations; 0 if Newton's method met
+            the targets from a neighbour.
+        starts: number of starts that were tried; 1 if the first met the targets.
+        starts_left_out: number of further starts for which there was no time.
+        cut_short: whether the optimiser ran out of time; its last inputs need not be a minimum.
+        barred: whether the optimiser ended behind a smooth obstacle or a rod; the equilibrium is the one on this side.
+        at_bounds: names of the decision variables that ended at a bound.
     """
 
     solution: Equilibrium[Any]
@@ -68,12 +68,12 @@ class Inverse(Result):
 
     @property
     def unstable(self) -> bool:
-        """Whether the equilibrium is known not to be stable; without a potential none is."""
+        """Whether the equilibrium is known to be unstable; false for loads without a potential."""
         return self.solution.converged and self.solution.stable is False
 
     @property
     def values(self) -> dict[str, Any]:
-        """The inputs found, by name: a number for one entry, else an array of shape (components, k)."""
+        """The inputs by name: a number for a single entry, else an array of shape (components, k)."""
         values: dict[str, Any] = {}
         unpacked = self.solution.model.inputs.unpack(self.solution.inputs)
         for name in given_names(self.solution.model):
@@ -85,10 +85,10 @@ class Inverse(Result):
 
 
 def with_verdict(result: Inverse, stable: bool) -> Inverse:
-    """The result of a search, judged: gaps, error of the model where it was estimated, and stability.
+    """Judge the result of a search by target errors, the error of the model if it was estimated, and stability.
 
     Args:
-        result: of :func:`search`, with an estimate of its error or without.
+        result: result of :func:`search`, with or without an error estimate.
         stable: whether a stable equilibrium was wanted.
     """
     solution = result.solution
@@ -116,7 +116,7 @@ def with_verdict(result: Inverse, stable: bool) -> Inverse:
 
 
 def gap_left(result: Inverse) -> float:
-    """Root of the weighted squares of what the targets are missed by; infinite without an equilibrium."""
+    """Square root of the sum of weighted squared target errors; infinite without an equilibrium."""
     solution = result.solution
     if not solution.converged:
         return np.inf
@@ -138,12 +138,12 @@ def _targets_sentence(result: Inverse) -> str:
 
 
 def _missed_by_the_model(result: Inverse) -> bool:
-    """Whether the model meets every target, but the error of its modes and nodes is too large for that."""
+    """Whether the model meets every target, but with too large an error by its modes and nodes."""
     return result.solution.converged and all(_reached(result)) and not meets_all(result)
 
 
 def _minimum_sentence(result: Inverse) -> str:
-    """Where a search that leaves a gap ended: it is local, whatever the number of its starts."""
+    """Sentence on the end of a search with a remaining target error, which is local for any number of starts."""
     where = "within the bounds"
     if result.at_bounds:
         where = f"at the bound of {', '.join(result.at_bounds)}"
@@ -161,7 +161,7 @@ def _minimum_sentence(result: Inverse) -> str:
 
 
 def _model_sentence(result: Inverse) -> str:
-    """Why targets that the discrete model meets are not met by the rod, as far as is known."""
+    """Sentence on why targets that the discrete model meets may not be met by the rod."""
     scene = result.solution.model.scene
     errors = [TARGET_KINDS[target.kind].model_error(target, result.solution) or 0.0 for target in result.targets]
     return (
@@ -179,19 +179,19 @@ def _words(gap: TargetMiss) -> str:
 
 
 def meets_all(result: Inverse) -> bool:
-    """Whether the equilibrium was found and meets every target: by the discrete model, and that within its error."""
+    """Whether the equilibrium meets every target in the discrete model, and within the model's error."""
     tolerance = result.solution.model.scene.accuracy.tolerance
     within = [gap.within(length, tolerance) for gap, length in _gaps_and_lengths(result)]
     return result.solution.converged and all(within)
 
 
 def _reached(result: Inverse) -> list[bool]:
-    """Whether the discrete model meets each target, whatever its own error."""
+    """Whether the discrete model meets each target, regardless of its error."""
     tolerance = result.solution.model.scene.accuracy.tolerance
     return [gap.reached(length, tolerance) for gap, length in _gaps_and_lengths(result)]
 
 
 def _gaps_and_lengths(result: Inverse) -> list[tuple[TargetMiss, float]]:
-    """The gap of each target, and the length that it is measured by, m."""
+    """Error of each target, and the length by which it is divided, m."""
     lengths = [length_of(result.solution.model, target) for target in result.targets]
     return list(zip(result.gaps, lengths, strict=True))

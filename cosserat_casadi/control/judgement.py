@@ -1,4 +1,4 @@
-"""The end of an optimisation as an equilibrium: judged by the test that ``solve`` applies."""
+"""Verdict on the equilibrium at the end of an optimisation, by the test of ``solve``."""
 
 from __future__ import annotations
 
@@ -23,21 +23,21 @@ def judged(
     *,
     parameters: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None = None,
 ) -> Solution:
-    """The equilibrium at the end of an optimisation, with residual, stability and the estimate of its error.
+    """Judge the equilibrium at the end of an optimisation by residual, stability and error estimate.
 
-    An optimiser holds the balance to its own tolerance, on modes that were chosen for other inputs. Newton's method
-    corrects the unknowns where that keeps them near; where it does not they are judged as they are. Only a solution
-    that has ``converged`` and is ``within_tolerance`` is one of the rod.
+    An optimiser satisfies the balance to its own tolerance, on modes that were chosen for other inputs. Newton's method
+    corrects the unknowns if it keeps them near; otherwise they are judged as they are. Only a solution that has
+    ``converged`` and is ``within_tolerance`` is valid for the rod.
 
     Args:
         model: the model of the problem.
-        x: unknowns that the optimiser found, shape (model.size,).
-        inputs: stacked inputs that it found, shape (model.inputs.size,).
-        parameters: as for :meth:`Model.at`; by default the scene's values.
+        x: unknowns at the end of the optimiser, shape (model.size,).
+        inputs: stacked inputs there, shape (model.inputs.size,).
+        parameters: parameters as for :meth:`Model.at`; by default the scene's values.
 
     Raises:
         SceneError: contact is exact, or an input or a parameter is refused.
-        ValueError: the unknowns are not as many as the model has.
+        ValueError: the number of unknowns differs from that of the model.
     """
     refuse_obstacles(model.scene, "an optimum")
     model = model.at(parameters)

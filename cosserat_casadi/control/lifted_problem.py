@@ -1,4 +1,4 @@
-"""The inverse problem as a mathematical program: equilibrium as constraints, weighted errors of targets as cost."""
+"""The inverse problem as a mathematical program, with the equilibrium as constraints and target errors as cost."""
 
 from __future__ import annotations
 
@@ -21,22 +21,22 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.system_functions import SystemFunctions
 
 DAMPING = (1e-1, 1e-2, 1e-3, 1e-4, 1e-8)
-"""Weights of the inputs' distance from where a round starts, the last one for all further rounds.
+"""Weights of the distance of the inputs from the start of a round; the last one is for all further rounds.
 
-Strong damping at first keeps the rods on the branch that they start on.
+Strong damping at first keeps the rods on their initial branch.
 """
 
 SETTLED = 1e-9
-"""Change of the inputs from round to round, in their scales, below which they have settled."""
+"""Change of the inputs from round to round, in their scales, below which the rounds end."""
 
 ROUNDS = 7
 """Most rounds of the optimiser."""
 
 LONGEST_RUN = 60.0
-"""Seconds after which one run of the optimiser ends where it is."""
+"""Time limit of one run of the optimiser, s."""
 
 OUT_OF_TIME = "Maximum_WallTime_Exceeded"
-"""The status that ipopt returns where its time is over."""
+"""Status of ipopt at its time limit."""
 
 IPOPT = {
     "print_level": 0,
@@ -48,34 +48,34 @@ IPOPT = {
     "bound_relax_factor": 0.0,
     "honor_original_bounds": "yes",
 }
-"""Options of the interior-point method; bounds are kept as they are written."""
+"""Options of the interior-point method; bounds are not relaxed."""
 
 LEARNED_HESSIAN = {"hessian_approximation": "limited-memory"}
-"""Further options where exact second derivatives cost too much."""
+"""Further options if exact second derivatives cost too much."""
 
 NEAR_BOUND = 1e-3
-"""Distance from a bound, in the scales, below which an input is tried at the bound itself."""
+"""Distance from a bound, in the scales, below which an input is also tried at the bound."""
 
 
 @dataclass(frozen=True)
 class LiftedProblem(SoughtInputs):
-    """Unknowns and n decision variables.
+    """The inverse problem in the unknowns of the model and n decision variables.
 
     Attributes:
-        optimiser: the interior-point method; it takes origin and wanted poses as parameters, so that other targets of
-            the same kinds share it.
-        errors: x, change, origin, wanted poses ↦ weighted errors of the targets, their derivatives by x and by change;
-            other targets of the same kinds share it too.
+        optimiser: the interior-point method; origin and wanted poses are parameters, so that targets of equal kinds
+            share it.
+        errors: (x, change, origin, wanted poses) ↦ weighted errors of the targets, derivatives by x and by change;
+            targets of equal kinds share it.
     """
 
     optimiser: ca.Function
     errors: ca.Function
 
     def solve(self, start: Equilibrium[Any], change: FloatArray) -> Inverse:
-        """Rounds of the optimiser, each damped about where the one before ended, then our own solve.
+        """Run rounds of the optimiser, each damped about the end of the one before, and then solve the equilibrium.
 
-        The damping picks one of many solutions and keeps the problem regular; moving its centre takes the error that
-        it makes out of the result.
+        The damping selects one of many solutions and keeps the problem regular; moving its centre removes its error
+        from the result.
         """
         # A failed first solve may end at no numbers.
         x = start.x if np.all(np.isfinite(start.x)) else self.model.unloaded()
@@ -102,10 +102,10 @@ class LiftedProblem(SoughtInputs):
         return self.on_this_side(start, result)
 
     def on_this_side(self, start: Equilibrium[Any], result: Inverse) -> Inverse:
-        """The result; where that is behind a smooth obstacle or a rod, the end of a path to its inputs.
+        """Return a result, or the end of a path to its inputs if it is behind a smooth obstacle or a rod.
 
-        Unknowns of the optimiser go anywhere. The path leads the inputs from the start, or the loads from zero where
-        the start is no equilibrium, without steps through obstacles or rods.
+        The optimiser may move unknowns through obstacles. The path moves the inputs from the start, or the loads from
+        zero if the start is no equilibrium, without steps through obstacles or rods.
         """
         end = result.solution
         if not isinstance(end, Solution) or not end.converged:
@@ -121,9 +121,9 @@ class LiftedProblem(SoughtInputs):
         return replace(led, cut_short=result.cut_short, barred=True)
 
     def _polished(self, result: Inverse, x: FloatArray, change: FloatArray) -> Inverse:
-        """The search once more with the inputs that are near a bound held at it; the better of the two.
+        """Search again with inputs near a bound held at the bound; return the better result.
 
-        An interior-point method stays off a bound by the root of its tolerance where nothing presses against it.
+        An interior-point method stays off an inactive bound by the square root of its tolerance.
         """
         lower, upper = self.ranges()
         at_lower = change <= lower + NEAR_BOUND
@@ -143,13 +143,13 @@ class LiftedProblem(SoughtInputs):
     def _optimum(
         self, x: FloatArray, centre: FloatArray, damping: float, ranges: tuple[FloatArray, FloatArray]
     ) -> FloatArray:
-        """Unknowns and changes at the end of one run of the optimiser, which may be no numbers.
+        """Unknowns and changes at the end of one run of the optimiser, which may be NaN.
 
         Args:
-            x: unknowns to start from.
-            centre: changes to start from, which the run is damped about, shape (n,).
-            damping: weight of the distance from these.
-            ranges: least and largest changes; the unknowns have none.
+            x: initial unknowns.
+            centre: initial changes, about which the run is damped, shape (n,).
+            damping: weight of the distance from these changes.
+            ranges: least and largest changes; the unknowns are not bounded.
         """
         unbounded = np.full(self.model.size, np.inf)
         optimum: FloatArray = self.optimiser(
@@ -169,7 +169,7 @@ def lifted_problem(
     start: Equilibrium[Any],
     stable: bool,
 ) -> LiftedProblem:
-    """The problem of a model, as :func:`cosserat_casadi.control.inverse.inverse_problem` takes it."""
+    """Make the problem of a model; arguments as for :func:`cosserat_casadi.control.inverse.inverse_problem`."""
     variables = decision_variables(model)
     if stable:
         check_potential(model, start.inputs)

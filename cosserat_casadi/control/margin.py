@@ -1,12 +1,12 @@
-"""How far an equilibrium is from instability, as a function that an optimiser can bound.
+"""Margin of an equilibrium from instability, as a function that an optimiser can bound.
 
-The second variation of the energy is set against the elastic energy's of the unloaded rods, over the admissible
-variations. Its smallest eigenvalue is the share of the elastic stiffness that loads leave: 1 − P/P_c for a column
-under the thrust P, zero where the equilibrium is critical, whatever the units and the number of modes. It has a kink
-where two eigenvalues meet, which is the rule in symmetric robots. The margin is the soft minimum −w log Σ exp(−λ/w):
-smooth, never above the smallest eigenvalue, and below it by at most w times the logarithm of the number of
-eigenvalues. It looks at all eigenvalues at once, so no optimiser escapes to a higher one, as it may where one
-eigenpair is made part of the problem.
+The second variation of the energy is compared with that of the elastic energy of the unloaded rods, over the admissible
+variations. Its smallest eigenvalue is the remaining share of the elastic stiffness under loads: 1 − P/P_c for a column
+under the thrust P, zero at a critical equilibrium, for any units and number of modes. It has a kink where two
+eigenvalues meet, which is common in symmetric robots. The margin is the soft minimum −w log Σ exp(−λ/w): smooth, never
+above the smallest eigenvalue, and below it by at most w times the logarithm of the number of eigenvalues. It depends on
+all eigenvalues, so that an optimiser cannot escape to a higher one, as it may if one eigenpair is part of the
+problem.
 """
 
 from __future__ import annotations
@@ -29,21 +29,21 @@ WIDTH = 0.02
 
 
 def stability_margin(model: Model, width: float = WIDTH, *, parameters: bool = False) -> ca.Function:
-    """A smooth lower bound of the smallest eigenvalue of the second variation, relative to the elastic stiffness.
+    """Make a smooth lower bound of the smallest eigenvalue of the second variation, relative to the elastic stiffness.
 
-    Where it is positive ``solve`` judges the equilibrium stable, on the same variations: the ones that supports, joints
-        and cables of given length admit. First and second derivatives are exact, at multiple eigenvalues too. NumPy
-        finds the eigenvalues, so the function cannot be exported to C.
+    If it is positive, ``solve`` judges the equilibrium stable, over the same variations, which supports, joints and
+    cables of given length admit. First and second derivatives are exact, also at multiple eigenvalues. NumPy computes
+    the eigenvalues, so the function cannot be exported to C.
 
     Args:
-        model: with loads that have a potential, and without cables that may go slack and stops.
-        width: of the soft minimum.
-        parameters: whether the parameters of the scene, if it names some, are an argument: by default they have the
-            scene's values. The elastic stiffness that the margin is a share of is always taken at the scene's values.
+        model: model with loads that have a potential, without stops and cables that may go slack.
+        width: width w of the soft minimum.
+        parameters: whether the parameters of the scene, if it names some, are an argument; by default they have the
+            scene's values. The elastic stiffness for comparison always has the scene's values.
 
     Returns:
         (x, inputs), or (x, inputs, p), ↦ margin; off equilibrium the margin of the symmetric part of the Jacobian
-        there. NaN where x or inputs are, or where a body may move while no rod is strained.
+        there. NaN if x or inputs are, or if a body may move without strain in the rods.
 
     Raises:
         SceneError: the loads have no potential, a cable may go slack, or a joint has a stop.
@@ -71,7 +71,7 @@ def stability_margin(model: Model, width: float = WIDTH, *, parameters: bool = F
 
 
 def _refuse_slack(model: Model) -> None:
-    """Refuse cables and stops that hold the rod at times only: the eigenvalues jump there."""
+    """Refuse cables and stops that hold the rod only in some states, where eigenvalues jump."""
     problems = []
     for i, actuator in enumerate(model.scene.actuators):
         if EFFECTS[actuator.kind].may_go_slack(actuator):
@@ -83,18 +83,18 @@ def _refuse_slack(model: Model) -> None:
 
 
 def _energy_units(model: Model) -> FloatArray:
-    """Energy unit of each free unknown relative to the largest, shape (n,)."""
+    """Energy unit of each free unknown, over the largest one, shape (n,)."""
     units = variations(model).units
     largest = units.max(initial=0.0)
     return np.asarray(units / largest)
 
 
 def _bordered(model: Model, given: list[Matrix]) -> Matrix:
-    """Second variation bordered by the linearised constraints and the lengths of quaternions, symmetric.
+    """Second variation, bordered by the linearised constraints and the norms of quaternions, symmetric.
 
     Args:
-        model: with or without parameters.
-        given: x, inputs, and p if the model has parameters.
+        model: model with or without parameters.
+        given: arguments x, inputs, and p if the model has parameters.
     """
     admissible = variations(model)
     jacobian = model.jacobian(*given)[0]
@@ -111,7 +111,7 @@ def _bordered(model: Model, given: list[Matrix]) -> Matrix:
 
 
 def _quaternion_growth(model: Model, x: Matrix) -> Matrix:
-    """Variation of the length of each floating frame's quaternion, which moves nothing and is not admitted, k×size."""
+    """Variation of the norm of each floating frame's quaternion, which moves nothing and is excluded, k×size."""
     discrete = model.discrete
     rows = []
     for name, frame in discrete.frames.items():

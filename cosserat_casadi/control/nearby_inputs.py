@@ -1,4 +1,4 @@
-"""Inputs that meet targets near an equilibrium: Newton's method for rows of a table, whose neighbours are known.
+"""Inputs that meet targets near an equilibrium, by Newton's method for rows of a table with known neighbours.
 
 The equilibrium r(x, u) = 0 and the weighted errors e(x, u) of the targets are linearised together. With the derivatives
 K = ∂r/∂x, R = ∂r/∂u and E_x, E_u of the errors, the unknowns follow a change du of the inputs by
@@ -6,9 +6,9 @@ dx = −K⁻¹ (r + R du), so that errors become
 
     e − E_x K⁻¹ r + (E_u − E_x K⁻¹ R) du .
 
-The shortest du that makes them zero is taken, in the scales of the inputs; one that would leave its range stays at the
-end of it, and the others make up for it. A few turns, of which the last are quadratic, where an optimiser takes rounds.
-Where this does not end at the targets, nothing is said about whether another method would.
+The shortest du that makes them zero is taken, in the scales of the inputs; an input that would leave its range stays at
+its bound, and the others compensate. A few iterations, of which the last converge quadratically, replace rounds of an
+optimiser. If they do not reach the targets, another method still may.
 """
 
 from __future__ import annotations
@@ -25,23 +25,23 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.broyden import solved
 
 MOST_TURNS = 15
-"""Turns before the search is given up: near ones take three to six."""
+"""Most iterations; near targets take three to six."""
 
 LONGEST = 0.3
-"""Largest change of an input, in its scale, or of an unknown in one turn."""
+"""Largest change of an input, in its scale, or of an unknown in one iteration."""
 
 NO_ERROR = 1e-9
-"""Weighted error of a target, without unit, that counts as none."""
+"""Weighted dimensionless error of a target that counts as zero."""
 
 SETTLED = 1e-10
-"""Change of inputs, in their scales, and of unknowns that counts as none."""
+"""Change of inputs, in their scales, and of unknowns that counts as zero."""
 
 UNMOVED = 1e-9
-"""Share of the largest singular value below which inputs do not move the errors."""
+"""Singular value, over the largest one, below which inputs do not change the errors."""
 
 
 def followed(problem: LiftedProblem, start: Equilibrium[Any]) -> Inverse | None:
-    """The result of Newton's method from an equilibrium near the targets, judged; None where it does not converge."""
+    """Run Newton's method from an equilibrium near the targets and judge the result; None if it does not converge."""
     model = problem.model
     wanted = wanted_poses(problem.targets)
     x = start.x
@@ -75,11 +75,11 @@ def followed(problem: LiftedProblem, start: Equilibrium[Any]) -> Inverse | None:
 
 
 def shortest(moved: FloatArray, errors: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:
-    """A short change of n inputs within ranges that takes m errors away, as far as inputs not at an end of theirs can.
+    """Short change of n inputs within ranges that removes m errors, as far as inputs that are not at bounds can.
 
     Args:
-        moved: what each input moves the errors by, shape (m, n).
-        errors: shape (m,).
+        moved: derivatives of the errors by the inputs, shape (m, n).
+        errors: errors, shape (m,).
         lower: least changes, shape (n,).
         upper: largest changes, shape (n,).
 

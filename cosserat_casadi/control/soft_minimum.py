@@ -1,7 +1,7 @@
 """The soft minimum of the eigenvalues of a bordered matrix as a CasADi function with two exact derivatives.
 
-NumPy finds the eigenvalues, so the functions are callbacks. There are three because CasADi asks each callback for a
-callback of its derivative: the value's is the gradient, the gradient's is the curvature along given directions.
+NumPy computes the eigenvalues, so the functions are callbacks. There are three because CasADi asks each callback for a
+callback of its derivative: the derivative of the value is the gradient, its derivative is a curvature in directions.
 
 They are the eigenvalues of a symmetric pencil on the null space of constraints. With K v + Aᵀ w = λ M v and A v = 0,
 the eigenvalues are those of S − λ D, where S = [[K, Aᵀ], [A, 0]] is the bordered matrix, D = diag(M, 0) is constant and
@@ -21,19 +21,19 @@ import numpy as np
 from cosserat_casadi.maths.typing import FloatArray
 
 RANK = 1e-12
-"""Share of the largest singular value of the constraints below which one counts as zero."""
+"""Singular value of the constraints, over the largest one, below which it counts as zero."""
 
 
 @cache
 def soft_minimum(measure: bytes, size: int, width: float) -> ca.Callback:
-    """Bordered matrix ↦ soft minimum, size×size ↦ 1×1; NaN where that has no meaning.
+    """Make the function bordered matrix, size×size, ↦ soft minimum, 1×1; NaN if it has no meaning.
 
-    Cached, since CasADi holds no reference to what Python computes: a callback must outlive the problems that call it.
+    It is cached, because CasADi keeps no reference to a callback, which must outlive the problems that call it.
 
     Args:
-        measure: M of :class:`Spectrum`, the bytes of its doubles row by row.
-        size: rows of the bordered matrix.
-        width: of the soft minimum.
+        measure: measure M of :class:`Spectrum`, as the bytes of its doubles, row by row.
+        size: number of rows of the bordered matrix.
+        width: width w of the soft minimum.
     """
     doubles = np.frombuffer(measure)
     rows = round(len(doubles) ** 0.5)
@@ -42,7 +42,7 @@ def soft_minimum(measure: bytes, size: int, width: float) -> ca.Callback:
 
 
 class _SpectrumCache:
-    """Spectra of matrices; the last spectrum is kept: value, gradient and curvature share one decomposition."""
+    """Spectra of matrices; the last one is kept, so that value, gradient and curvature share one decomposition."""
 
     def __init__(self, measure: FloatArray, size: int, width: float) -> None:
         self.size = size
@@ -60,14 +60,14 @@ class _SpectrumCache:
         self._of_doubles = of_doubles
 
     def spectrum(self, matrix: ca.DM) -> Spectrum | None:
-        """The spectrum of a matrix; None where it is not finite or the measure is zero for some variation."""
+        """Compute the spectrum of a matrix; None if it is not finite or the measure vanishes for some variation."""
         return self._of_doubles(matrix.full().tobytes())
 
 
 class _SpectralFunction(ca.Callback):  # type: ignore[misc]
-    """A function of the matrix, and perhaps of changes of it side by side, that is read off the spectrum.
+    """A function of the matrix, and possibly of changes of it side by side, that follows from the spectrum.
 
-    It has both derivatives, unless it is of changes.
+    It has forward and reverse derivatives, unless it depends on changes.
     """
 
     def __init__(self, name: str, spectra: _SpectrumCache, changes: int = 0) -> None:
@@ -77,7 +77,7 @@ class _SpectralFunction(ca.Callback):  # type: ignore[misc]
         self.construct(name, {})
 
     def read(self, spectrum: Spectrum, *changes: ca.DM) -> float | FloatArray:
-        """The result."""
+        """Evaluate the result."""
         raise NotImplementedError
 
     def eval(self, arg: list[ca.DM]) -> list[float | FloatArray]:
@@ -140,13 +140,13 @@ class _Value(_SpectralFunction):
         return ca.Function(name, arguments, [adjoints], inames, onames, opts)
 
     def _symbols(self) -> tuple[ca.MX, ca.MX]:
-        """Arguments that CasADi gives every derivative: the input and the output."""
+        """Arguments of every derivative in CasADi: the input and the output."""
         matrix = ca.MX.sym("matrix", self._side_by_side(1))
         return matrix, ca.MX.sym("value")
 
 
 class _Gradient(_SpectralFunction):
-    """Matrix ↦ gradient; its derivative is symmetric, so it is its own transpose."""
+    """Matrix ↦ gradient, whose derivative is symmetric, so that forward and reverse derivatives agree."""
 
     def read(self, spectrum: Spectrum, *changes: ca.DM) -> FloatArray:
         return spectrum.gradient
@@ -233,12 +233,12 @@ class Spectrum:
 
     @cached_property
     def gradient(self) -> FloatArray:
-        """Derivative of the soft minimum with the bordered matrix, N×N, symmetric: Σ p z zᵀ."""
+        """Derivative of the soft minimum by the bordered matrix, N×N, symmetric: Σ p z zᵀ."""
         weighted_modes = self.modes * self._shares
         return np.asarray(weighted_modes @ self.modes.T)
 
     def curvature(self, change: FloatArray) -> FloatArray:
-        """Change of the gradient with a change of the matrix, both N×N and symmetric."""
+        """Change of the gradient by a change of the matrix, both N×N and symmetric."""
         symmetric = (change + change.T) / 2
         changed_modes = symmetric @ self.modes
         # Between modes: zᵢᵀ δS zⱼ times the divided difference of p.
@@ -260,7 +260,7 @@ class Spectrum:
 
     @cached_property
     def _shares(self) -> FloatArray:
-        """Derivative of the soft minimum with each eigenvalue, p; they add up to one."""
+        """Derivatives p of the soft minimum by the eigenvalues, whose sum is one."""
         decays = self._decays
         return np.asarray(decays / np.sum(decays))
 

@@ -1,4 +1,4 @@
-"""Inputs that are sought: changes of decision variables in their scales, and how the inputs of one are judged."""
+"""Sought inputs: changes of decision variables in their scales, and the verdict on their inputs."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.system_functions import SystemFunctions
 
 SEED = 20_240
-"""Seed of the generator that scatters starts: the same scene has the same starts."""
+"""Seed of the generator that scatters starts, so that equal scenes have equal starts."""
 
 AT_BOUND = 1e-6
-"""Distance from a bound, in half its range, below which an input is at it."""
+"""Distance from a bound, over half the range, below which an input counts as at the bound."""
 
 
 @dataclass(frozen=True)
@@ -32,8 +32,8 @@ class SoughtInputs(ABC):
         model: the model.
         targets: poses and positions to reach.
         variables: the decision variables.
-        scale: a change of each that matters, shape (n,).
-        origin: stacked inputs that changes count from.
+        scale: scale of each decision variable, shape (n,).
+        origin: stacked inputs from which changes are counted.
     """
 
     model: SystemFunctions
@@ -44,20 +44,20 @@ class SoughtInputs(ABC):
 
     @abstractmethod
     def solve(self, start: Equilibrium[Any], change: FloatArray) -> Inverse:
-        """The search from one start, judged.
+        """Search from one start, and judge the result.
 
         Args:
-            start: a solve at the inputs that it starts from.
-            change: these inputs as changes from the origin in their scales, shape (n,).
+            start: solution at the initial inputs.
+            change: initial inputs as changes from the origin in their scales, shape (n,).
         """
 
     def judged(self, start: Equilibrium[Any] | FloatArray | None, change: FloatArray, rounds: int) -> Inverse:
-        """The equilibrium at the inputs found, solved and judged like any other.
+        """Solve for the equilibrium at the resulting inputs, and judge it like any other.
 
         Args:
-            start: a solution, or unknowns, to start the solve from; None for the unloaded scene.
-            change: decision variables found, as changes from the origin in their scales, shape (n,).
-            rounds: runs of the optimiser that it took.
+            start: solution, or unknowns, from which the solve starts; None for the unloaded scene.
+            change: resulting decision variables, as changes from the origin in their scales, shape (n,).
+            rounds: number of runs of the optimiser.
         """
         inputs = self.inputs(change)
         values = self.model.inputs.unpack(inputs)
@@ -67,7 +67,7 @@ class SoughtInputs(ABC):
         return replace(result, met=meets_all(result))
 
     def change(self, inputs: FloatArray) -> FloatArray:
-        """Decision variables of stacked inputs, brought into their ranges, as changes from the origin, shape (n,)."""
+        """Decision variables among stacked inputs, clipped to their ranges, as changes from the origin, shape (n,)."""
         difference = self.variables.clipped(inputs) - self.origin
         return np.asarray(difference[self.variables.indices] / self.scale)
 
@@ -79,7 +79,7 @@ class SoughtInputs(ABC):
         return self.variables.clipped(inputs)
 
     def scattered(self, count: int) -> FloatArray:
-        """Changes of the decision variables to start from, shape (count, n); none where no range is closed.
+        """Scatter initial changes of the decision variables, shape (count, n); empty if no range is closed.
 
         Entries without a range on both sides stay at the origin.
         """
@@ -93,7 +93,7 @@ class SoughtInputs(ABC):
         return np.asarray(least + shares * (most - least))
 
     def _at_bounds(self, inputs: FloatArray) -> tuple[str, ...]:
-        """Names of the decision variables that are at a bound, those aside that their bounds hold at one value."""
+        """Names of the decision variables at a bound, without variables whose bounds coincide."""
         variables = self.variables
         values = inputs[variables.indices]
         near = AT_BOUND * self.scale

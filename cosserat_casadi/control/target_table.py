@@ -1,4 +1,4 @@
-"""Tables of targets: a row for each pose that one section or body is to have, from a CSV file."""
+"""Tables of targets from CSV files, with a row for each wanted pose of one section or body."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ QUATERNION = ("qw", "qx", "qy", "qz")
 
 @dataclass(frozen=True)
 class TargetTable:
-    """Targets of one section or body, one after the other.
+    """Consecutive targets of one section or body.
 
     Attributes:
         columns: names of the columns of the file.
-        values: shape (rows, columns).
+        values: numbers of the file, shape (rows, columns).
         lines: line of each row in the file.
         rows: the target of the scene at each row's pose.
     """
@@ -38,14 +38,14 @@ class TargetTable:
 
 
 def read_targets(path: Path, scene: scenes.Scene) -> TargetTable:
-    """The targets of a CSV file with the columns x, y, z and, of a pose, qw, qx, qy, qz.
+    """Read the targets of a CSV file with the columns x, y, z and, for poses, qw, qx, qy, qz.
 
     Args:
         path: the file.
-        scene: its only target says what the poses are for; of a pose without columns for it the orientation is kept.
+        scene: scene with a single target, for the same section or body; it gives the orientation if no columns do.
 
     Raises:
-        SceneError: with every fault of the file; the scene has not one target, or one of a curve.
+        SceneError: the file has faults, which the error lists; or the scene has not one target, or one of a curve.
     """
     target = _only_target(scene)
     header, values, lines, problems = read_numbers(path)
@@ -80,7 +80,7 @@ def _only_target(scene: scenes.Scene) -> scenes.Target:
 
 
 def _column_problems(where: str, header: list[str], target: scenes.Target) -> list[Problem]:
-    """Columns that are missing, that a table does not know, or that the target has no use for."""
+    """Problems of columns that are missing, unknown, or useless for the target."""
     known = (*POSITION, *QUATERNION)
     needed = list(POSITION)
     oriented = [name for name in QUATERNION if name in header]

@@ -28,15 +28,14 @@ FrameType = TypeVar("FrameType", bound=FrameTarget)
 
 @dataclass(frozen=True)
 class TargetMiss:
-    """Error of one target: how far it is missed.
+    """Error of one target.
 
     Attributes:
         what: the target in words.
-        position: distance in m, of a curve the largest over its points.
-        angle: angle between the target's orientation and the actual one, rad; None where the orientation is free.
-        position_error: estimated error of the discrete model that the distance was measured on, m; None where it was
-            not estimated.
-        angle_error: estimated error of the model that the angle was measured on, rad; None where it was not estimated.
+        position: distance, m; for a curve the largest over its points.
+        angle: angle between the target's orientation and the actual one, rad; None for a free orientation.
+        position_error: estimated error of the discrete model in that position, m; None if it was not estimated.
+        angle_error: estimated error of the discrete model in that angle, rad; None if it was not estimated.
     """
 
     what: str
@@ -51,13 +50,13 @@ class TargetMiss:
         return angle_reached and self.position <= tolerance * length
 
     def within(self, length: float, tolerance: float) -> bool:
-        """Whether the target is met: the gap and, where it was estimated, the error of the model that it is of."""
+        """Whether the target is met, by its error and, if it was estimated, by the error of the model."""
         error_within = self.position_error is None or self.position_error <= tolerance * length
         return error_within and self.reached(length, tolerance)
 
 
 def length_of(model: SystemFunctions, target: TargetRecord) -> float:
-    """Length that a target's distance is measured by, m: its rod's length, for a body or a tube the longest length."""
+    """Length by which the distance of a target is divided, m: its rod's length; for bodies and tubes the longest."""
     lengths = model.lengths
     rod = getattr(target, "rod", None)
     if rod is None:
@@ -75,32 +74,32 @@ class Target(Kind, ABC, Generic[RecordType]):
     kinds = Kinds(TARGETS)
 
     def wanted(self, target: RecordType) -> FloatArray:
-        """Position and quaternion that the target asks for, which a table of targets may vary; zeros by default."""
+        """Wanted position and quaternion, which a table of targets may vary, shape (7,); zeros by default."""
         return np.zeros(POSE_SIZE)
 
     @abstractmethod
     def error(self, target: RecordType, model: Any, wanted: Matrix, x: Matrix, inputs: Matrix) -> Matrix:
-        """Errors without unit and without the weight of the target, k×1; zero where it is met.
+        """Dimensionless errors without the weight of the target, k×1; zero if it is met.
 
         Positions count relative to :func:`length_of`, orientations by the chord 2 sin(θ/2) of their angle θ.
 
         Args:
-            target: the record; what :meth:`wanted` gives of it is not read.
+            target: the record, without the entries that :meth:`wanted` returns.
             model: the model.
-            wanted: as :meth:`wanted` gives it, 7×1.
+            wanted: wanted position and quaternion, as in :meth:`wanted`, 7×1.
             x: unknowns.
             inputs: stacked inputs.
         """
 
     @abstractmethod
     def gap(self, target: RecordType, solution: Any) -> TargetMiss:
-        """How far a solution is from the target."""
+        """Error of the target in a solution."""
 
     def model_error(self, target: RecordType, solution: Any) -> float | None:
-        """Estimated error of a solution where the target is: position relative to the length of the rod, and rad.
+        """Estimated error of a solution at the target: of the position, over the length of the rod, and of angles, rad.
 
         Returns:
-            the error, by default of the shapes of all rods; None where it was not estimated.
+            the error, by default that of the shapes of all rods; None if it was not estimated.
         """
         error: float | None = solution.largest_error
         return error
@@ -115,10 +114,10 @@ TARGET_KINDS = Target.kinds
 
 
 class _OfFrame(Target[FrameType]):
-    """Where one section of a rod, or one body, is to be."""
+    """Target for one section of a rod, or one body."""
 
     def wanted(self, target: Any) -> FloatArray:
-        """Position that the target asks for, and zeros for the orientation, shape (7,)."""
+        """Wanted position, and zeros for the orientation, shape (7,)."""
         return np.array([*target.position, 0.0, 0.0, 0.0, 0.0])
 
     def error(self, target: Any, model: SystemFunctions, wanted: Matrix, x: Matrix, inputs: Matrix) -> Matrix:
@@ -132,17 +131,17 @@ class _OfFrame(Target[FrameType]):
         return TargetMiss(what, math.dist(position, target.position), None)
 
     def model_error(self, target: Any, solution: Equilibrium[Any]) -> float | None:
-        """Error of the shapes for a section in between; for tips and for bodies, which tips hold, error of the tips."""
+        """Error of the shapes for an inner section; error of the tips for tips, and for bodies, which tips hold."""
         if target.rod is not None and target.at != 1.0:
             return solution.largest_error
         return solution.error_estimate
 
     def points(self, target: Any) -> Sequence[Sequence[float]]:
-        """The position that the target asks for, as one point."""
+        """The wanted position, as one point."""
         return [target.position]
 
     def _pose(self, target: Any, model: Any, x: Matrix, inputs: Matrix) -> list[Matrix]:
-        """Position and quaternion of what the target is for."""
+        """Position and quaternion of the section or body of the target."""
         if target.rod is None:
             outputs = model.body[str(target.body)](x, inputs)
         elif target.at == 1.0:
@@ -182,7 +181,7 @@ class PoseOfFrame(_OfFrame[scenes.PoseTarget]):
     record = scenes.PoseTarget
 
     def wanted(self, target: scenes.PoseTarget) -> FloatArray:
-        """Position and quaternion that the target asks for, shape (7,)."""
+        """Wanted position and quaternion, shape (7,)."""
         return np.array([*target.position, *target.quaternion])
 
     def error(
@@ -213,7 +212,7 @@ class PointsAlongRod(Target[scenes.CurveTarget]):
     record = scenes.CurveTarget
 
     def error(self, target: scenes.CurveTarget, model: Model, wanted: Matrix, x: Matrix, inputs: Matrix) -> Matrix:
-        """Differences over the length and over the root of their number, 3k×1."""
+        """Distances over the length, and over the square root of the number of points, 3k×1."""
         shape = model.shape[target.rod]
         differences = []
         for X, point in zip(target.at, target.points, strict=True):
@@ -232,12 +231,12 @@ class PointsAlongRod(Target[scenes.CurveTarget]):
         return TargetMiss(what, float(distances.max()), None)
 
     def points(self, target: scenes.CurveTarget) -> Sequence[Sequence[float]]:
-        """The points that the target asks for."""
+        """The wanted points."""
         return target.points
 
 
 def wanted_poses(targets: Sequence[scenes.Target]) -> FloatArray:
-    """Positions and quaternions that targets ask for, 7 numbers for each; zeros for what a target leaves free."""
+    """Stack the wanted positions and quaternions of targets, 7 numbers for each, with zeros for free ones."""
     return np.concatenate([TARGET_KINDS[target.kind].wanted(target) for target in targets])
 
 
@@ -248,15 +247,15 @@ def weighted_errors(
     x: Matrix,
     inputs: Matrix,
 ) -> Matrix:
-    """Weighted errors of targets, without unit; half their sum of squares is what an optimiser lessens.
+    """Weighted dimensionless errors of targets; an optimiser minimises half their sum of squares.
 
-    Positions count relative to the rod's length. Orientations by the chord 2 sin(θ/2) of the angle θ between them,
-    which is smooth at every angle. The points of a curve count together as much as one point.
+    Positions count relative to the rod's length, orientations by the chord 2 sin(θ/2) of the angle θ between them,
+    which is smooth at every angle. The points of a curve together count as much as one point.
 
     Args:
         model: the model.
-        targets: the targets; their positions and orientations are not read, but for the points of curves.
-        wanted: these, as in :func:`wanted_poses`.
+        targets: the targets, without their positions and orientations, except for the points of curves.
+        wanted: wanted positions and orientations, as in :func:`wanted_poses`.
         x: unknowns.
         inputs: stacked inputs.
     """
@@ -270,7 +269,7 @@ def weighted_errors(
 
 
 def target_errors(solution: Equilibrium[Any], targets: Sequence[scenes.Target]) -> tuple[TargetMiss, ...]:
-    """How far a solution is from each of the targets, and how far the model itself may be off there."""
+    """Errors of the targets in a solution, with the estimated error of the model there."""
     gaps = []
     for target in targets:
         mechanics = TARGET_KINDS[target.kind]

@@ -1,7 +1,7 @@
-"""Optimisation problems in exact contact: solved again and again as relaxed contacts become exact.
+"""Optimisation problems in exact contact, solved repeatedly as relaxed contacts become exact.
 
 The smoothing of the pairs goes to zero in a few solves, each from the optimum before it, and the sections that may
-touch move to the places of the exact contacts. Each end is held against the exact law.
+touch move to the places of the exact contacts. Each result is compared with the exact law.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ SMOOTHINGS = (FIRST_SMOOTHING, 1e-3, 1e-4, 1e-5, 1e-6)
 """Values of ε of one solve after the other: at the third, gap times force is 5e-9 of the length and of EI/ℓ²."""
 
 LAST_SECTIONS = 2
-"""Index of the value at which sections move until they stay; smaller ones are for contacts that just open, where gap
+"""Index of the value at which sections move until they stay; smaller values are for contacts that just open, where gap
 and force are ε/√2 each."""
 
 SOLVES = 7
 """Most solves."""
 
 Optimum = Callable[[FloatArray], tuple[npt.ArrayLike, npt.ArrayLike]]
-"""Parameters of all stages, shape (stages, parameters.size) ↦ their unknowns and inputs at the optimum."""
+"""Parameters of all stages, shape (stages, parameters.size) ↦ unknowns and inputs of all stages at the optimum."""
 
 
 @dataclass(frozen=True)
@@ -41,13 +41,13 @@ class Tightened:
 
     Attributes:
         z: unknowns and forces of the last solve of each stage, shape (stages, size).
-        inputs: stacked inputs of each, shape (stages, inputs.size).
-        p: smoothing and abscissae of each, shape (stages, parameters).
-        equilibria: of the exact law at these inputs, with estimates of their errors.
-        difference: largest distance of a tip or body between the two, over the length, or angle, rad.
-        tolerance: wanted of the difference and these errors together.
-        passing: stages to which a rod goes through an obstacle, on the straight way from the stage before, or to the
-            first from the equilibrium that the problem was started near.
+        inputs: stacked inputs of each stage, shape (stages, inputs.size).
+        p: smoothing and abscissae of each stage, shape (stages, parameters).
+        equilibria: equilibria of the exact law at these inputs, with error estimates.
+        difference: largest distance of a tip or body between relaxed and exact law, over the length, or angle, rad.
+        tolerance: bound on the sum of the difference and these errors.
+        passing: stages that a rod reaches through an obstacle, on the straight way from the stage before, or to the
+            first stage from the initial equilibrium.
     """
 
     z: FloatArray
@@ -60,13 +60,13 @@ class Tightened:
 
     @property
     def converged(self) -> bool:
-        """Whether the exact law has equilibria at all inputs that are, to the tolerance, where the problem has them."""
+        """Whether the exact law has equilibria at all inputs, which agree with the problem to the tolerance."""
         balanced = all(solution.converged for solution in self.equilibria)
         return balanced and self.difference + self.error_estimate <= self.tolerance
 
     @property
     def error_estimate(self) -> float:
-        """Largest estimate of the errors of the equilibria; infinite where one is not known."""
+        """Largest error estimate of the equilibria; infinite if one is unknown."""
         known = [solution.error_estimate for solution in self.equilibria]
         return max(np.inf if error is None else error for error in known)
 
@@ -98,18 +98,18 @@ def tightened(
     near: Solution | None = None,
     tolerance: float | None = None,
 ) -> Tightened:
-    """Solve a problem again and again as its relaxed contacts become exact, and hold its end against the exact law.
+    """Solve a problem repeatedly as its relaxed contacts become exact, and compare the result with the exact law.
 
-    The smoothing ε goes to zero in a few solves. After each the exact contacts are found at the inputs of each stage,
-    and its sections move there; that goes on until the two agree. Each stage is an equilibrium by itself, on whichever
-    side of a thin obstacle the problem has it: see :attr:`Tightened.passing`.
+    The smoothing ε goes to zero in a few solves. After each solve the exact contacts are found at the inputs of each
+    stage, and its sections move there, until both agree. Each stage is a separate equilibrium, on either side of a thin
+    obstacle: see :attr:`Tightened.passing`.
 
     Args:
         contact: the model of the problem.
-        optimum: solves the problem for given parameters of its stages, from its last optimum.
-        stages: equilibria in the problem.
-        near: an equilibrium of the scene at whose contacts there are sections from the beginning.
-        tolerance: of the difference and the errors of the equilibria; by default the tolerance of the scene.
+        optimum: function that solves the problem for given parameters of its stages, from its last optimum.
+        stages: number of equilibria in the problem.
+        near: an equilibrium of the scene, at whose contacts there are sections from the beginning.
+        tolerance: bound on the difference and the errors of the equilibria; by default the tolerance of the scene.
 
     Raises:
         SceneError: ``optimum`` returns other shapes, or numbers that are not finite.
@@ -153,7 +153,7 @@ def tightened(
 
 
 def _of_stages(what: str, values: npt.ArrayLike, shape: tuple[int, int]) -> FloatArray:
-    """The numbers of all stages, a row each; refuse other shapes, and numbers that are not finite."""
+    """Return the numbers of all stages as rows; refuse other shapes, and numbers that are not finite."""
     array = np.asarray(values, dtype=float)
     if 1 in shape and array.size == shape[0] * shape[1]:
         array = array.reshape(shape)

@@ -1,4 +1,4 @@
-"""Estimates: loads and places on a robot in every row of a table, from its sensors, and directions that none sees.
+"""Estimates of loads and places on a robot from its sensors, for every row of a table, and of unseen directions.
 
 cases ─ stacking ─▶ arrays ─ codegen/estimator ─▶ maxima a posteriori ─ knowledge ─▶ Estimate
 """

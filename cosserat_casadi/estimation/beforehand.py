@@ -1,6 +1,6 @@
-"""Prior knowledge of an estimate: the numbers that differ from row to row, their ranges, priors and sizes.
+"""Prior knowledge of an estimate: the unknown numbers of each row, their ranges, priors and typical sizes.
 
-These numbers are stacked as the solver in C has them: inputs, and the parameters behind them.
+These numbers are stacked as in the solver in C: inputs, followed by parameters.
 """
 
 from __future__ import annotations
@@ -21,20 +21,20 @@ from cosserat_casadi.model.load_cases import CaseLayout
 from cosserat_casadi.scene.measurements import ModeMeasurement
 
 REACH = 2.0
-"""Deviations of the prior up to which the discretisation is to serve."""
+"""Deviations of the prior up to which the discretisation must be valid."""
 
 DRAWS = 6
-"""Cases within that reach that the discretisation is chosen on."""
+"""Number of cases within that reach for which the discretisation is chosen."""
 
 SEED = 22
-"""Seed of the draw of these cases: the same scene gives the same discretisation."""
+"""Seed of the draw of these cases, so that equal scenes have equal discretisations."""
 
 
 def check_unknowns(scene: scenes.Scene) -> None:
-    """Refuse a scene whose measurements or unknowns an estimate has no use for.
+    """Refuse a scene with measurements or unknowns that an estimate cannot use.
 
     Raises:
-        SceneError: with every fault.
+        SceneError: the scene has faults; the error lists all of them.
     """
     problems = []
     if not scene.measurements:
@@ -64,12 +64,12 @@ def check_unknowns(scene: scenes.Scene) -> None:
 
 
 def unknown_parameters(scene: scenes.Scene) -> tuple[str | tuple[str, ...], ...]:
-    """Parameters that are unknown, in each row or in all."""
+    """Names of the unknown parameters, of each row or shared by all."""
     return tuple(unknown.parameter for unknown in scene.unknowns if unknown.parameter is not None)
 
 
 def with_unknown_parameters(model: Model) -> Model:
-    """The model with these parameters alone: all other numbers are constants of it."""
+    """Make the model with these parameters alone; all other numbers become constants."""
     wanted = unknown_parameters(model.scene)
     if not wanted:
         return model.at()
@@ -79,12 +79,12 @@ def with_unknown_parameters(model: Model) -> Model:
 
 
 def check_ranges(model: Model, layout: UnknownLayout) -> None:
-    """Refuse ranges of parameters within which the scene would be another, such as places that change their order.
+    """Refuse ranges of parameters within which the structure of the scene changes, such as the order of places.
 
-    The corners of the ranges of every two numbers are tried, all others at the scene's values.
+    The corners of the ranges of every two numbers are tried, with all others at the scene's values.
 
     Raises:
-        SceneError: with what the scene says of the first corner that it refuses, for each unknown.
+        SceneError: the scene refuses a corner; the error contains the first refusal for each unknown.
     """
     sides: list[tuple[int, float]] = []
     for entry in (*layout.own, *layout.shared):
@@ -110,7 +110,7 @@ def check_ranges(model: Model, layout: UnknownLayout) -> None:
 
 
 def stacked_indices(entries: Sequence[UnknownEntry], inputs: int) -> list[int]:
-    """Places of numbers that are found among the stacked inputs and the parameters behind them."""
+    """Indices of the unknown numbers among the stacked inputs, followed by parameters."""
     found = []
     for entry in entries:
         first = 0 if entry.of_input else inputs
@@ -119,13 +119,13 @@ def stacked_indices(entries: Sequence[UnknownEntry], inputs: int) -> list[int]:
 
 
 def of_parameters(layout: UnknownLayout) -> list[int]:
-    """Which of the numbers that are found are parameters."""
+    """Indices of the unknown numbers that are parameters."""
     kinds = [entry.of_input for entry in layout.own for _ in entry.labels]
     return [k for k, of_input in enumerate(kinds) if not of_input]
 
 
 def knowledge_of(layout: UnknownLayout) -> Knowledge:
-    """Prior knowledge of the unknowns of each row in a scene: bounds, priors, typical sizes."""
+    """Collect the prior knowledge of the unknowns of each row: bounds, priors, typical sizes."""
     limits = layout.own_limits
     typical = np.concatenate([entry.scales for entry in layout.own])
     # What is known beforehand says best what is much and what is little.
@@ -136,12 +136,12 @@ def knowledge_of(layout: UnknownLayout) -> Knowledge:
 
 
 def cases_within_reach(cases: CaseLayout, layout: UnknownLayout, inputs: FloatArray) -> Iterator[dict[str, FloatArray]]:
-    """Cases that a discretisation is chosen on: measured ones, their unknowns as far off as may be expected.
+    """Cases for the choice of a discretisation: measured ones, with unknowns as far off as can be expected.
 
     Args:
         cases: inputs and parameters of the scene.
-        layout: of the unknowns.
-        inputs: of all measured cases, shape (cases, inputs).
+        layout: layout of the unknowns.
+        inputs: inputs of all measured cases, shape (cases, inputs).
     """
     known = knowledge_of(layout)
     indices = stacked_indices(layout.own, cases.inputs.size)

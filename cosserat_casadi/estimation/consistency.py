@@ -1,9 +1,9 @@
-"""Whether model, priors and stated noise explain the data of all rows together.
+"""Test whether model, priors and stated noise explain the data of all rows together.
 
-Twice the cost of a row is a sum of squares that has the chi-square distribution of as many degrees of freedom as there
-are measurements and priors, less the estimated numbers, if all is as stated. So has the sum over rows. The differences
-of each sensor are off by as much on one side as on the other. Y. Bar-Shalom, X. R. Li, T. Kirubarajan, *Estimation with
-Applications to Tracking and Navigation*, Wiley 2001, section 5.4.
+If all assumptions hold, twice the cost of a row is a sum of squares with a chi-square distribution, whose degrees of
+freedom are the measurements and priors less the estimated numbers. So is the sum over rows. The differences of each
+sensor then have zero mean. Y. Bar-Shalom, X. R. Li, T. Kirubarajan, *Estimation with Applications to Tracking and
+Navigation*, Wiley 2001, section 5.4.
 """
 
 from __future__ import annotations
@@ -18,24 +18,24 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.spelling import counted, named
 
 DOUBTED = 4.0
-"""Deviations of a normal distribution beyond which chance is no explanation: 1 of 30 000 times on one side."""
+"""Deviations of a normal distribution beyond which chance is no explanation: one-sided, 1 in 30 000."""
 
 ROW_DOUBTED = 5.0
-"""Deviations of a normal distribution beyond which a single row is doubted: of a million rows none by chance."""
+"""Deviations of a normal distribution beyond which a single row is doubted; by chance none in a million rows is."""
 
 
 @dataclass(frozen=True)
 class Consistency:
-    """How well data, priors and model go together.
+    """Consistency of data, priors and model.
 
     Attributes:
         squares: sum of the squares of all deviations from data and priors.
         freedom: expected value of the sum.
-        deviations: by how much the sum is larger, in standard deviations of a normal distribution.
-        row_deviations: by how much the sum of each row is larger, in the same unit, shape (cases,); NaN where the row
-            was not found, or nothing is left over.
-        bias: mean deviation of each sensor over the rows, in standard deviations of that mean, by its name; of sensors
-            that were read in two rows at least, the largest deviation counted as the next largest.
+        deviations: excess of the sum, in standard deviations of a normal distribution.
+        row_deviations: excess of the sum of each row, in that unit, shape (cases,); NaN if the row was not found, or
+            has no degrees of freedom.
+        bias: mean deviation of each sensor over the rows, in standard deviations of that mean, by its name; for sensors
+            that were read in at least two rows, with the largest deviation replaced by the next largest.
     """
 
     squares: float
@@ -51,13 +51,13 @@ class Consistency:
 
     @property
     def biased(self) -> dict[str, float]:
-        """Sensors that are off to one side, the worst first."""
+        """Biased sensors, the worst first."""
         worst = sorted(self.bias.items(), key=lambda item: -abs(item[1]))
         return {name: bias for name, bias in worst if abs(bias) > DOUBTED}
 
     @property
     def outlying(self) -> npt.NDArray[np.bool_]:
-        """Rows that stand out by themselves, shape (cases,)."""
+        """Mask of the rows that are outliers by themselves, shape (cases,)."""
         return np.nan_to_num(self.row_deviations, nan=0.0) > ROW_DOUBTED
 
     def sentences(self, cases: Sequence[str]) -> Iterator[str]:
@@ -89,15 +89,15 @@ def consistency(
     residuals: dict[str, FloatArray],
     shared_freedom: int = 0,
 ) -> Consistency:
-    """How well rows go together with a model.
+    """Judge the consistency of rows with a model.
 
     Args:
-        squares: twice the cost of each row, shape (cases,); NaN where it was not found.
-        freedom: measurements and priors of each, less estimated numbers, shape (cases,).
-        shared: squared deviations of the numbers that all rows share from their priors; each has one, so that they
-            add no freedom.
-        residuals: by the name of a sensor its deviations in all rows, those not measured left out.
-        shared_freedom: how many of the shared numbers a bound holds: they were not fitted, and their priors stay.
+        squares: twice the cost of each row, shape (cases,); NaN if it was not found.
+        freedom: number of measurements and priors of each row, less estimated numbers, shape (cases,).
+        shared: squared deviations of the shared numbers from their priors; each has a prior, so that they add no
+            freedom.
+        residuals: deviations of each sensor in all rows where it was measured, by the sensor's name.
+        shared_freedom: number of shared numbers held at a bound, which were not fitted, while their priors count.
     """
     found = np.isfinite(squares)
     total = float(squares[found].sum()) + shared
@@ -110,14 +110,14 @@ def consistency(
 def _mean_deviation(values: FloatArray) -> float:
     """Mean of two deviations or more, in standard deviations of that mean.
 
-    The largest counts as the next largest: one reading that is far off is no side that all are on.
+    The largest deviation is replaced by the next largest, as a single outlier is no bias.
     """
     limit = np.sort(np.abs(values))[-2]
     return float(np.clip(values, -limit, limit).sum() / np.sqrt(len(values)))
 
 
 def chi_square_deviations(squares: float, freedom: int) -> float:
-    """The deviations of a normal distribution that are as likely as a sum of squares; NaN without freedom.
+    """Deviations of a normal distribution that are as likely as a sum of squares; NaN without degrees of freedom.
 
     E. B. Wilson, M. M. Hilferty, Proc. Natl. Acad. Sci. 17, 1931, 684-688.
     """

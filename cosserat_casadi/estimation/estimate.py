@@ -1,9 +1,9 @@
 """Estimates of the inputs and places that explain each measured case best, by maximum a posteriori.
 
 The maximum a posteriori of each case is found in C, from the unloaded rod, on all cores, or in exact contact in Python;
-where a place along a rod or another parameter is unknown, from several values between its bounds. Its covariance is
-taken from the linearised model there: S. Särkkä, *Bayesian Filtering and Smoothing*, Cambridge University Press 2013,
-section A.3; the Gaussian approximation of Laplace.
+if a place along a rod or another parameter is unknown, from several values between its bounds. Its covariance is that
+of the linearised model there: S. Särkkä, *Bayesian Filtering and Smoothing*, Cambridge University Press 2013, section
+A.3; Laplace's Gaussian approximation.
 """
 
 from __future__ import annotations
@@ -59,13 +59,13 @@ from cosserat_casadi.spelling import FEW, named
 from cosserat_casadi.sweeps.local import available_cores
 
 RowSolver: TypeAlias = EstimatorLibrary | RowsInContact
-"""Rows of measurements ↦ the numbers that explain them."""
+"""Solver of rows of measurements for the numbers that explain them, in C or in Python."""
 
 CHUNK = 256
-"""Cases that a thread takes at once."""
+"""Number of cases that a thread takes at once."""
 
 CHECKED = 3
-"""Cases that are solved again on a finer discretisation."""
+"""Number of cases that are solved again on a finer discretisation."""
 
 
 def estimate_model(
@@ -143,7 +143,7 @@ def estimate_model(
 
 
 def _measured(cases: Sequence[Case]) -> list[tuple[int, int, float]]:
-    """Number of the measurement, number of its entry, and the measured number, of all cases."""
+    """Index of the measurement, index of the entry, and value, for all measured numbers of all cases."""
     return [
         (measurement, entry, float(value))
         for case in cases
@@ -155,10 +155,10 @@ def _measured(cases: Sequence[Case]) -> list[tuple[int, int, float]]:
 
 
 def _beyond_obstacles(model: Model, found: Estimates, inputs: FloatArray) -> list[str]:
-    """A word for each row: BEHIND where it is behind a smooth obstacle or a rod, UNREACHED where it may be, else "".
+    """Word for each row: BEHIND if it is behind a smooth obstacle or a rod, UNREACHED if it may be, else "".
 
     Args:
-        model: with its parameters free.
+        model: model with its parameters free.
         found: estimates of the rows.
         inputs: stacked inputs, then parameters, of each row, shape (cases, inputs + parameters).
     """
@@ -174,7 +174,7 @@ def _beyond_obstacles(model: Model, found: Estimates, inputs: FloatArray) -> lis
 
 
 def _stability(result: Estimate) -> Iterator[bool | None]:
-    """Whether the equilibrium of each row is stable; None where no estimate is, or the loads have no potential."""
+    """Stability of the equilibrium of each row; None without an estimate, or for loads without a potential."""
     model = result.model
     allowed = variations(model)
     for row, found in enumerate(result.found.tolist()):
@@ -189,7 +189,7 @@ def _stability(result: Estimate) -> Iterator[bool | None]:
 
 
 def _on_contacts(cases: Sequence[str], changes: Mapping[int, str]) -> Iterator[str]:
-    """A remark on contacts that change next to estimates, so that deviations to one side are others."""
+    """Remark on contacts that change next to estimates, so that deviations differ between both sides."""
     if changes:
         rows = named([f"{cases[row]} ({change})" for row, change in changes.items()])
         yield (
@@ -199,12 +199,12 @@ def _on_contacts(cases: Sequence[str], changes: Mapping[int, str]) -> Iterator[s
 
 
 def _units(entries: Sequence[UnknownEntry]) -> tuple[str, ...]:
-    """Unit of every number that is found."""
+    """Unit of each estimated number."""
     return tuple(entry.unit for entry in entries for _ in entry.labels)
 
 
 def _rows_and_shared(search: Search, layout: UnknownLayout) -> tuple[Searched, SharedNumbers | None, FloatArray]:
-    """The rows; the shared numbers; and the share of the uncertainty of these in the rows' covariances."""
+    """Find the rows, the shared numbers, and the contribution of their uncertainty to the covariances of the rows."""
     if not layout.shared:
         return search.rows(np.zeros(0)), None, np.zeros(())
     shared = SharedSearch(search.rows, layout.shared_limits, search.known.limits)
@@ -219,7 +219,7 @@ def _consistency(
     shared: SharedNumbers | None,
     sensors: Sequence[str],
 ) -> Consistency:
-    """How well some rows, in which data and priors determine every unknown, go together with the model."""
+    """Judge the consistency of determined rows with the model."""
     own = len(layout.own_labels)
     priors = int(np.count_nonzero(layout.own_limits.weight))
     # A number that a bound holds is not fitted to the data.
@@ -244,12 +244,12 @@ class Search:
     """The search for all rows, on all cores.
 
     Attributes:
-        library: the solver, in C where contact is not exact.
-        tables: the cases, each with the values from which the searches begin.
+        library: the solver, in C unless contact is exact.
+        tables: the cases, one table for each set of initial values.
         known: prior knowledge of the numbers of each row.
-        indices: places of these numbers, and of the shared ones behind them, in a row of the inputs.
-        cores: threads.
-        report: told how many rows are found.
+        indices: indices of these numbers, then of the shared ones, in a row of the inputs.
+        cores: number of threads.
+        report: callback with the number of finished rows.
     """
 
     library: RowSolver
@@ -261,11 +261,11 @@ class Search:
 
     @property
     def own(self) -> int:
-        """How many numbers are found in each row."""
+        """Number of estimated numbers in each row."""
         return len(self.known.size)
 
     def rows(self, shared: FloatArray) -> Searched:
-        """The best of each row where the shared numbers have these values, and what else was found."""
+        """Find the best minimum of each row for these values of the shared numbers, and the second best."""
         known = self.known.with_held(shared)
         tables = [self._starting(table, shared) for table in self.tables]
         runs = _found(self.library, tables, known, self.cores, self.report)
@@ -279,12 +279,12 @@ class Search:
         return replace(table, inputs=inputs)
 
     def sampled(self, found: Estimates, covariance: FloatArray, draws: int) -> Sampled:
-        """Mean squared deviations by draws around the estimates; NaN without an estimate, or if not determined.
+        """Mean squared deviations by draws around the estimates; NaN without an estimate, or if undetermined.
 
         Args:
             found: the rows.
-            covariance: of the linearised model, shape (cases, k, k).
-            draws: in each round.
+            covariance: covariance of the linearised model, shape (cases, k, k).
+            draws: number of draws in each round.
         """
         rows = np.flatnonzero(np.isfinite(covariance[:, 0, 0]))
         result = Sampled(np.full_like(covariance, np.nan), np.zeros(len(covariance)))
@@ -325,20 +325,20 @@ def estimate(
 ) -> Estimate:
     """Estimate the unknowns of each measured case of a scene, or of a model.
 
-    A model keeps its modes and nodes. A scene has modes and nodes that meet its tolerance: they are chosen for loads
-    within two deviations of the priors, and some cases are solved again at the end on a finer discretisation that tells
+    A model keeps its modes and nodes. For a scene, modes and nodes are chosen to meet its tolerance for loads within
+    two deviations of the priors, and some cases are solved again at the end on a finer discretisation to estimate
     their error.
 
     Args:
         subject: a scene with measurements, whose unknowns are ``per_row`` or have priors; or a model of such a scene:
             ``build(scene.with_unknowns())``.
-        data: columns by measurement, by its name or its file, that stand for the file.
-        cores: threads, at least 1; all of this machine by default.
-        progress: called with the work under way.
+        data: columns by measurement, by its name or its file, which replace the file.
+        cores: number of threads, at least 1; by default as many as the machine has cores.
+        progress: callback with the work under way.
 
     Raises:
-        SceneError: a table is refused, an unknown that all rows share has no prior, or the scene refuses a parameter
-            that is between its bounds.
+        SceneError: a table is refused, a shared unknown has no prior, or the scene refuses a parameter between its
+            bounds.
         ExportError: there is no C compiler, or it fails.
     """
     if isinstance(subject, Model):
@@ -365,13 +365,13 @@ def estimate(
 def start_tables(
     table: MeasuredCases, layout: UnknownLayout, indices: Sequence[int], scene: scenes.Scene
 ) -> list[MeasuredCases]:
-    """The cases with the values from which each search begins: parameters are spread between their bounds.
+    """Make a table of the cases for each search, with initial values; parameters are spread between their bounds.
 
     Args:
-        table: the cases, unknown inputs with the values to begin with.
-        layout: of the unknowns.
-        indices: places of their numbers in a row of the inputs.
-        scene: says how many searches are made, where parameters are unknown.
+        table: the cases, with initial values of unknown inputs.
+        layout: layout of the unknowns.
+        indices: indices of their numbers in a row of the inputs.
+        scene: scene with the number of searches for unknown parameters.
     """
     chosen = of_parameters(layout)
     if not chosen:
@@ -389,7 +389,7 @@ def start_tables(
 def _found(
     library: RowSolver, tables: Sequence[MeasuredCases], known: Knowledge, cores: int, report: StageProgress
 ) -> list[Estimates]:
-    """Estimates from each table of starts, in chunks on all cores."""
+    """Compute estimates from each table of starts, in chunks on all cores."""
     count = len(tables[0].inputs)
     chunks = [slice(first, first + CHUNK) for first in range(0, count, CHUNK)]
     parts = [table.part(chunk) for table in tables for chunk in chunks]
@@ -405,7 +405,7 @@ def _found(
 
 
 def _checked(result: Estimate, report: StageProgress) -> Iterator[tuple[int, float | None]]:
-    """Some cases solved again in Python, with the error that a finer discretisation tells."""
+    """Solve some cases again in Python, with error estimates by a finer discretisation."""
     found = np.flatnonzero(result.found)
     if not found.size:
         return

@@ -1,4 +1,4 @@
-"""The end of an estimate: the estimates of each row, how well they are known, and directions that no sensor sees."""
+"""Result of an estimate: the estimates of each row, their uncertainty, and directions that no sensor sees."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.result import Result
 
 BLIND = 1e-10
-"""Share of the largest eigenvalue of the information, in typical sizes, below which data and prior say nothing."""
+"""Eigenvalue of the information, in typical sizes, over the largest one, below which a direction is undetermined."""
 
 HARDLY_SEEN = 0.01
-"""Information of the data, over the prior's, below which the prior alone speaks: a deviation that is
-narrower by half a percent."""
+"""Information of the data, over that of the prior, below which the prior alone determines a direction: its deviation
+is narrower by half a percent."""
 
 SHOWN_PART = 0.2
-"""Least part of an unknown in a direction that is told."""
+"""Least component of an unknown that is named in the description of a direction."""
 
 SURE = 0.95
-"""Share of the posterior mass from which on the best minimum stands for all."""
+"""Share of the posterior mass above which the best minimum represents all."""
 
 NOT_DETERMINED = "not_determined"
 """Word for a row whose unknowns neither data nor priors determine."""
@@ -38,7 +38,7 @@ BEHIND = "behind"
 """Word for a row whose search led through a smooth obstacle or a rod."""
 
 UNREACHED = "unreached"
-"""Word for a row whose search may have led through one of these: paths of its loads stall before they show it."""
+"""Word for a row whose search may have led through one of these, as paths of its loads stall before they show it."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -50,21 +50,21 @@ class Estimate(Result):
         cases: first row of each case in words.
         labels: names of the unknown numbers.
         units: units of the unknown numbers.
-        outcomes: how each case ended: ``found``, or why not, see :data:`REASONS`.
-        values: the maxima a posteriori, shape (cases, k); NaN where nothing was found.
-        covariance: covariance of the values, shape (cases, k, k), NaN where nothing was found; the uncertainty of the
-            shared numbers is in it. By draws it holds the mean products of deviations from the values.
+        outcomes: outcome of each case: ``found``, or the reason of the failure, see :data:`REASONS`.
+        values: the maxima a posteriori, shape (cases, k); NaN without an estimate.
+        covariance: covariance of the values, shape (cases, k, k), NaN without an estimate; it includes the uncertainty
+            of the shared numbers. With draws it consists of the mean products of deviations from the values.
         cost: half the sum of squares in squared standard deviations, shape (cases,).
-        numbers: how many were measured in each case, shape (cases,).
-        x: the equilibria, shape (cases, size).
-        inputs: stacked inputs of each, shape (cases, inputs).
-        parameters: stacked parameters of each, shape (cases, parameters); often none.
-        second: what else explains the rows; None where one search was made for each.
-        unseen: directions that the data do not see, in words, with the number of cases in which that is so.
-        consistency: how well data, priors and model go together.
-        shared: what all rows share; None where nothing of that is unknown.
-        stable: of each case whether its equilibrium is stable; None where that has no meaning, and in exact contact.
-        checked: cases solved again on a finer discretisation: number of the case, estimated error.
+        numbers: count of measured numbers in each case, shape (cases,).
+        x: unknowns of the equilibria, shape (cases, size).
+        inputs: stacked inputs of each case, shape (cases, inputs).
+        parameters: stacked parameters of each case, shape (cases, parameters); often none.
+        second: second best minima of the rows; None after a single search for each.
+        unseen: directions that the data do not see, in words, with the number of cases in which they are unseen.
+        consistency: consistency of data, priors and model.
+        shared: numbers that all rows share; None if none of these is unknown.
+        stable: stability of the equilibrium of each case; None if that has no meaning, and in exact contact.
+        checked: cases solved again on a finer discretisation: index of the case, estimated error.
         warnings: sentences on what looks wrong.
     """
 
@@ -90,12 +90,12 @@ class Estimate(Result):
 
     @property
     def found(self) -> npt.NDArray[np.bool_]:
-        """Which cases were found, shape (cases,)."""
+        """Mask of the cases with an estimate, shape (cases,)."""
         return np.array([outcome == ENDINGS[0] for outcome in self.outcomes])
 
     @property
     def doubtful(self) -> npt.NDArray[np.bool_]:
-        """Cases that were found, but might be otherwise: another minimum has a share worth telling, shape (cases,)."""
+        """Mask of the cases with a doubtful estimate: another minimum has a considerable share, shape (cases,)."""
         if self.second is None:
             return np.zeros(len(self.cases), dtype=bool)
         return self.found & (self.second.share < SURE)
@@ -107,25 +107,25 @@ class Estimate(Result):
 
     @property
     def intervals(self) -> FloatArray:
-        """Intervals that hold 95 % of the posterior, shape (cases, k, 2)."""
+        """Intervals with 95 % of the posterior, shape (cases, k, 2)."""
         half = NORMAL_95 * self.sigma
         return np.stack([self.values - half, self.values + half], axis=2)
 
     @property
     def counts(self) -> dict[str, int]:
-        """How many cases ended in each way."""
+        """Number of cases by outcome."""
         return dict(Counter(self.outcomes))
 
     @property
     def message(self) -> str:
-        """How many cases were found, in words."""
+        """Sentence with the number of cases that have an estimate."""
         return f"{int(np.count_nonzero(self.found))} of {len(self.cases)} rows found."
 
     @property
     def within_tolerance(self) -> bool | None:
         """Whether every case that was solved again is within the scene's tolerance.
 
-        None where none was, and where no tolerance has a meaning.
+        The value is None if none was, and if no tolerance has a meaning.
         """
         accuracy = self.model.scene.accuracy
         if not self.checked or not accuracy.binds:
@@ -134,7 +134,7 @@ class Estimate(Result):
 
     @property
     def holds(self) -> bool:
-        """Whether some case was found, and every one that was looked at is within the scene's tolerance."""
+        """Whether some case has an estimate, and every case that was solved again is within the scene's tolerance."""
         return self.within_tolerance is not False and bool(np.any(self.found))
 
 
@@ -146,18 +146,18 @@ REASONS = {
     UNREACHED: "An obstacle or a rod is in the way, and paths of loads stall: rods may be behind.",
     NOT_DETERMINED: "Neither data nor priors determine the unknowns: give priors, or measure more.",
 }
-"""Why a case was not found, by its outcome."""
+"""Reason for a missing estimate, by outcome."""
 
 
 def information_of(
     found: Estimates, known: Knowledge, labels: Sequence[str]
 ) -> tuple[FloatArray, npt.NDArray[np.bool_], dict[str, int]]:
-    """Information of data and priors on rows of estimates.
+    """Determine the information of data and priors on rows of estimates.
 
-    Directions are told in the deviations of the priors, or in typical sizes where an unknown has no prior.
+    Directions are expressed in the deviations of the priors, or in typical sizes for unknowns without a prior.
 
     Returns:
-        covariances, shape (cases, k, k), NaN where not determined; which rows are determined, shape (cases,); and the
+        covariances, shape (cases, k, k), NaN if undetermined; mask of the determined rows, shape (cases,); and the
         directions that the data do not see, as in :class:`Estimate`.
     """
     cases, k = found.unknowns.shape
@@ -180,7 +180,7 @@ def information_of(
 
 
 def _unseen(of_data: FloatArray, has_prior: npt.NDArray[np.bool_], labels: Sequence[str]) -> dict[str, int]:
-    """Directions of little information, in words, with how many cases have them."""
+    """Directions of little information, in words, with the number of cases that have them."""
     eigenvalues, vectors = np.linalg.eigh(of_data)
     least = BLIND * eigenvalues[:, -1:]
     # Where every unknown has a prior, what hardly tightens it is not seen either.
@@ -192,7 +192,7 @@ def _unseen(of_data: FloatArray, has_prior: npt.NDArray[np.bool_], labels: Seque
 
 
 def _described(direction: FloatArray, labels: Sequence[str]) -> str:
-    """A direction in words, such as ``0.97 push.force.x − 0.24 push.moment.y``."""
+    """Describe a direction in words, such as ``0.97 push.force.x − 0.24 push.moment.y``."""
     largest = int(np.argmax(np.abs(direction)))
     signed = direction * np.sign(direction[largest])
     order = np.argsort(-np.abs(signed), kind="stable")

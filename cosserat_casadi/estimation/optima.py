@@ -1,7 +1,7 @@
-"""Several searches for each row, and their minima: the best, the second best, and how sure the choice is.
+"""Several searches for each row, and their minima: the best, the second best, and the certainty of the choice.
 
-Where a place along the rod is unknown the misfit may have several minima: a small force far out bends a rod much like a
-large one near its base. Each search finds one; different minima are counted by the mass of the posterior around them,
+If a place along the rod is unknown, the misfit may have several minima: a small force far out bends a rod much like a
+large one near its base. Each search finds one; different minima are weighted by the mass of the posterior around them,
 each as a normal distribution: D. J. C. MacKay, *Information Theory, Inference, and Learning Algorithms*, Cambridge
 University Press 2003, chapter 27.
 """
@@ -18,10 +18,10 @@ from cosserat_casadi.codegen.estimator import Estimates
 from cosserat_casadi.maths.typing import FloatArray
 
 SAME = 0.1
-"""Deviations within which two searches have found one minimum."""
+"""Distance, in deviations, up to which two searches count as having found one minimum."""
 
 SEED = 16
-"""Seed of the order in which several unknown places are combined: the same scene gives the same starts."""
+"""Seed of the order in which several unknown places are combined, so that equal scenes have equal starts."""
 
 
 @dataclass(frozen=True)
@@ -29,10 +29,9 @@ class SecondBest:
     """The second best minimum of each row.
 
     Attributes:
-        values: unknowns of the second-best minimum that the searches found, shape (cases, k); NaN where they found one
-            alone.
-        cost: cost of the second-best minimum, shape (cases,); NaN where they found one alone.
-        share: share of the best minimum in the posterior mass of all minima, shape (cases,); NaN where none was found.
+        values: unknowns of the second best minimum, shape (cases, k); NaN if the searches found a single one.
+        cost: cost of the second best minimum, shape (cases,); NaN if the searches found a single one.
+        share: share of the best minimum in the posterior mass of all minima, shape (cases,); NaN if none was found.
     """
 
     values: FloatArray
@@ -41,12 +40,12 @@ class SecondBest:
 
 
 def spread_starts(lower: FloatArray, upper: FloatArray, count: int) -> FloatArray:
-    """Places from which searches begin, shape (count, n): in each of so many equal parts of every range, once.
+    """Spread starts of searches, shape (count, n), with one in each of ``count`` equal parts of every range.
 
     Args:
         lower: least values, shape (n,).
         upper: largest values, shape (n,).
-        count: of starts, at least 1.
+        count: number of starts, at least 1.
     """
     shares = (np.arange(count) + 0.5) / count
     rng = np.random.default_rng(SEED)
@@ -55,11 +54,11 @@ def spread_starts(lower: FloatArray, upper: FloatArray, count: int) -> FloatArra
 
 
 def best_of(runs: Sequence[Estimates], own: int) -> tuple[Estimates, SecondBest]:
-    """The best minimum of each row out of several searches, and what else they found.
+    """Select the best and the second best minimum of each row from several searches.
 
     Args:
-        runs: searches for the same cases, each from other values.
-        own: number of estimated unknowns in each row; further ones behind them are held.
+        runs: searches for the cases, each from other values.
+        own: number of estimated unknowns in each row; the unknowns after these are held.
     """
     cases = len(runs[0].outcome)
     rows = np.arange(cases)
@@ -86,14 +85,14 @@ def best_of(runs: Sequence[Estimates], own: int) -> tuple[Estimates, SecondBest]
 
 
 def _distance(one: Estimates, other: Estimates) -> FloatArray:
-    """How far apart two minima are, in deviations of the second, shape (cases,); NaN where one was not found."""
+    """Distance of two minima, in deviations of the second, shape (cases,); NaN if one was not found."""
     apart = one.unknowns - other.unknowns
     squares: FloatArray = np.einsum("ci,cij,cj->c", apart, other.information, apart)
     return np.sqrt(np.maximum(squares, 0.0))
 
 
 def _log_mass(run: Estimates, rows: npt.NDArray[np.bool_], own: int) -> FloatArray:
-    """Logarithm of the posterior mass around the minima of some rows, but for a constant, by Laplace's method."""
+    """Logarithm of the posterior mass around the minima of some rows, up to a constant, by Laplace's method."""
     _, log_determinant = np.linalg.slogdet(run.information[rows, :own, :own])
     mass: FloatArray = -run.cost[rows] - log_determinant / 2.0
     return mass

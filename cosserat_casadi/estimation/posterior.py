@@ -1,10 +1,10 @@
-"""Mean squared deviations of posteriors that are no normal distributions, by importance sampling.
+"""Mean squared deviations of posteriors that are not normal distributions, by importance sampling.
 
 Around each estimate steps are drawn from a normal distribution, somewhat wider than the covariance of the linearised
-model, and weighted with the posterior there, for which the equilibrium is solved; a second round draws from the mean
-and the covariance that the first has found, where enough of its draws count: O. Cappé, A. Guillin, J. M. Marin, C. P.
-Robert, *Population Monte Carlo*, J. Comput. Graph. Stat. 13, 2004, 907-929. The draws are the same for every row, have
-mean 0 and covariance 1 exactly, and come in pairs z, −z.
+model, and weighted with the posterior there, for which the equilibrium is solved. A second round draws from the mean
+and the covariance of the first, if enough of its draws count: O. Cappé, A. Guillin, J. M. Marin, C. P. Robert,
+*Population Monte Carlo*, J. Comput. Graph. Stat. 13, 2004, 907-929. All rows have equal normalised draws, with exact
+mean 0 and covariance 1, in pairs z, −z.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import additive_recurrence
 
 WIDENED = (1.2, 1.1)
-"""How much wider than the covariance that is known the draws of each round are."""
+"""Factor by which the draws of each round are wider than the known covariance."""
 
 LEAST_EFFECTIVE = 3.0
-"""Draws that count, for each unknown number, below which a row keeps the covariance of the linearised model."""
+"""Least effective draws for each unknown; with fewer, a row keeps the covariance of the linearised model."""
 
 Costs = Callable[[FloatArray], FloatArray]
-"""Steps away from the estimates, shape (cases, draws, k) ↦ costs there, shape (cases, draws)."""
+"""Steps from the estimates, shape (cases, draws, k) ↦ costs there, shape (cases, draws)."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Sampled:
 
     Attributes:
         covariance: mean products of the deviations from the estimates, shape (cases, k, k).
-        effective: number of equal draws that the weighted ones are worth, shape (cases,).
+        effective: effective number of draws, shape (cases,).
     """
 
     covariance: FloatArray
@@ -43,19 +43,19 @@ class Sampled:
 
     @property
     def sound(self) -> npt.NDArray[np.bool_]:
-        """Whether enough draws count for the covariance, shape (cases,)."""
+        """Mask of the rows with enough effective draws for the covariance, shape (cases,)."""
         is_sound: npt.NDArray[np.bool_] = self.effective >= LEAST_EFFECTIVE * self.covariance.shape[1]
         return is_sound
 
 
 def sampled(costs: Costs, least: FloatArray, covariance: FloatArray, draws: int) -> Sampled:
-    """Mean squared deviations from estimates by draws around them.
+    """Compute mean squared deviations from estimates by draws around them.
 
     Args:
-        costs: of steps away from the estimates.
+        costs: function of steps from the estimates ↦ costs.
         least: costs of the estimates, shape (cases,).
-        covariance: of the linearised model, shape (cases, k, k).
-        draws: in each round; four for each unknown where that is more.
+        covariance: covariance of the linearised model, shape (cases, k, k).
+        draws: number of draws in each round; at least four for each unknown are made.
     """
     cases, k, _ = covariance.shape
     z = normal_draws(max(draws, 4 * k), k)
@@ -82,7 +82,7 @@ def sampled(costs: Costs, least: FloatArray, covariance: FloatArray, draws: int)
 
 
 def _weights(logarithms: FloatArray) -> FloatArray:
-    """Weights whose sum is 1, shape (cases, draws); 0 all where no draw has an equilibrium within the bounds."""
+    """Weights whose sum is 1, shape (cases, draws); all are 0 if no draw has an equilibrium within the bounds."""
     largest = logarithms.max(axis=1, keepdims=True)
     weights = np.exp(logarithms - np.where(np.isfinite(largest), largest, 0.0))
     total = weights.sum(axis=1, keepdims=True)
@@ -91,20 +91,20 @@ def _weights(logarithms: FloatArray) -> FloatArray:
 
 
 def _effective(weights: FloatArray) -> FloatArray:
-    """Number of equal draws that weighted ones are worth, shape (cases,); 0 where all weights are."""
+    """Effective number of weighted draws, shape (cases,); 0 if all weights are 0."""
     squares = np.sum(weights**2, axis=1)
     effective: FloatArray = np.divide(1.0, squares, out=np.zeros_like(squares), where=squares > 0.0)
     return effective
 
 
 def normal_draws(count: int, k: int) -> FloatArray:
-    """Numbers of a normal distribution in pairs z, −z, with mean 0 and covariance 1 exactly, shape (count, k).
+    """Draws of a normal distribution in pairs z, −z, with exact mean 0 and covariance 1, shape (count, k).
 
-    Evenly spread, by the additive recurrence with powers of the root of g^(k+1) = g + 1: M. Roberts, 2018.
+    They are evenly spread by the additive recurrence with powers of the root of g^(k+1) = g + 1: M. Roberts, 2018.
 
     Args:
-        count: at least 2 k; of an odd number one more.
-        k: numbers in each.
+        count: number of draws, at least 2 k; an odd number is increased by one.
+        k: number of entries of each draw.
     """
     # The corner of all ones comes first, where a normal distribution has no number.
     shares = additive_recurrence((count + 1) // 2 + 1, k)[1:]

@@ -1,4 +1,4 @@
-"""Rows of measurements and the inputs that explain them, of rods in exact contact: in Python, row by row.
+"""Inputs that explain rows of measurements for rods in exact contact, in Python, row by row.
 
 Each row is a fit of all its numbers, whose equilibrium is followed with its contacts
 (identification/case_contacts.py), with the derivatives and the prior knowledge of the solver in C.
@@ -25,15 +25,15 @@ from cosserat_casadi.numerics.arrow_least_squares import ArrowFit, FitOutcome, L
 
 @dataclass(frozen=True)
 class _State:
-    """A row at some numbers.
+    """State of a row at some values of its numbers.
 
     Attributes:
         shared: the numbers, shape (k,).
-        own: no numbers of a block, shape (1, 0).
+        own: empty array of block unknowns, shape (1, 0).
         case: the equilibrium.
         residual: differences in standard deviations, shape (rows,).
-        by_numbers: derivatives of the residual with the numbers, shape (rows, k).
-        z_by_numbers: derivatives of the solution in contact with the numbers, shape (len(z), k).
+        by_numbers: derivatives of the residual by the numbers, shape (rows, k).
+        z_by_numbers: derivatives of the solution z in contact by the numbers, shape (len(z), k).
     """
 
     shared: FloatArray
@@ -50,7 +50,7 @@ class _Row:
 
     Attributes:
         solver: the solver of all rows.
-        table: the row alone.
+        table: table with this row alone.
     """
 
     solver: RowsInContact
@@ -58,7 +58,7 @@ class _Row:
 
     @property
     def offsets(self) -> npt.NDArray[np.int64]:
-        """Where the rows of the one block of residuals begin and end, shape (2,)."""
+        """Start and end of the single block of residuals, shape (2,)."""
         return np.array([0, self.table.weights.size])
 
     def inputs_and_parameters(self, numbers: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -69,24 +69,24 @@ class _Row:
         return both[:inputs], both[inputs:]
 
     def first(self, numbers: FloatArray) -> _State | None:
-        """The row at the numbers to begin with; None where it has no equilibrium."""
+        """Solve the row at initial numbers; None if it has no equilibrium."""
         inputs, p = self.inputs_and_parameters(numbers)
         point, reasons = self.solver.equilibria.started(inputs[None], inputs[None], p, p)
         return None if reasons[0] else self._state(numbers, point.settled[0])
 
     def at(self, shared: FloatArray, own: FloatArray, near: _State) -> _State | None:
-        """The row at other numbers; None where its equilibrium cannot be followed there."""
+        """Follow the row to other numbers; None if its equilibrium cannot be followed there."""
         predicted = near.case.z + near.z_by_numbers @ (shared - near.shared)
         case = self.solver.equilibria.followed(near.case, predicted, *self.inputs_and_parameters(shared))
         state = None if case is None else self._state(shared, case)
         return state if state is not None and np.all(np.isfinite(state.by_numbers)) else None
 
     def jacobian(self, state: _State) -> FloatArray:
-        """Derivatives of the residual with the numbers, shape (rows, k)."""
+        """Derivatives of the residual by the numbers, shape (rows, k)."""
         return state.by_numbers
 
     def _state(self, numbers: FloatArray, case: CaseInContact) -> _State:
-        """The row at an equilibrium, with its derivatives while contacts stay."""
+        """Make the state of the row at an equilibrium, with derivatives for constant contacts."""
         equations = case.equations
         chosen = np.zeros((self.table.inputs.shape[1], len(numbers)))
         chosen[self.solver.indices, np.arange(len(numbers))] = 1.0
@@ -108,8 +108,8 @@ class RowsInContact:
 
     Attributes:
         model: the measured model.
-        sections: rows of each measurement in one case, by its number.
-        indices: of the numbers that are found among the stacked inputs and the parameters behind them.
+        sections: number of rows of each measurement in one case, by index of the measurement.
+        indices: indices of the estimated numbers among the stacked inputs, followed by parameters.
     """
 
     model: Model
@@ -118,31 +118,31 @@ class RowsInContact:
 
     @property
     def equilibria(self) -> ContactEquilibria:
-        """The equilibrium of one row, with its contacts."""
+        """Equilibria of single rows, with their contacts."""
         return ContactEquilibria(self.model, 1)
 
     def measured(self, model: Model) -> ca.Function:
-        """The differences of all measurements, of a model whose elements end at contacts."""
+        """Make the differences of all measurements for a model whose elements end at contacts."""
         everything = range(model.inputs.size + model.parameters.size)
         # Abscissae that differ from row to row are arguments.
         abscissae = np.outer([0.0, 1.0], np.ones(sum(self.sections.values())))
         return kept_with(model, "_differences", lambda: differences(model, dict(self.sections), everything, abscissae))
 
     def estimate(self, cases: MeasuredCases, known: Knowledge) -> Estimates:
-        """The numbers that explain each row best."""
+        """Find the numbers that explain each row best."""
         rows = [self._estimated(cases.part(slice(i, i + 1)), known) for i in range(len(cases.inputs))]
         return Estimates.joined(rows)
 
     def contact_changes(
         self, cases: MeasuredCases, numbers: FloatArray, covariance: FloatArray, known: Knowledge
     ) -> dict[int, str]:
-        """Contacts that come, go or change within a standard deviation of estimates, in words, by the row's number.
+        """Contacts that open, close or change within a standard deviation of estimates, in words, by index of the row.
 
         Args:
             cases: all rows.
-            numbers: their estimates, shape (cases, k); NaN where there is none.
-            covariance: covariance of the first j numbers, the rest held, shape (cases, j, j).
-            known: knowledge of these j numbers, which do not go beyond their bounds.
+            numbers: estimates of the rows, shape (cases, k); NaN without an estimate.
+            covariance: covariance of the first j numbers, with the rest held, shape (cases, j, j).
+            known: prior knowledge of these j numbers, which stay within their bounds.
         """
         changes = {}
         for i in np.flatnonzero(np.isfinite(numbers).all(axis=1) & np.isfinite(covariance).all(axis=(1, 2))).tolist():
@@ -184,7 +184,7 @@ class RowsInContact:
         return ended
 
     def _ended(self, ending: str, table: MeasuredCases, numbers: FloatArray, iterations: int = 0) -> Estimates:
-        """The end of a search, of which the numbers alone are known."""
+        """Make the result of a search of which only the numbers are known."""
         k = len(numbers)
         return Estimates(
             outcome=np.array([ENDINGS.index(ending)]),
@@ -200,7 +200,7 @@ class RowsInContact:
     def costs(
         self, cases: MeasuredCases, inputs: FloatArray, x: FloatArray, known: Knowledge, steps: FloatArray
     ) -> FloatArray:
-        """Costs some steps away from estimates, shape (cases, draws); infinite where there is no equilibrium."""
+        """Compute costs at some steps from estimates, shape (cases, draws); infinite without an equilibrium."""
         costs = np.full(steps.shape[:2], np.inf)
         for i, of_row in enumerate(steps):
             row = _Row(self, cases.part(slice(i, i + 1)))

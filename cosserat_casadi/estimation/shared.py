@@ -1,13 +1,13 @@
-"""Numbers that all rows share and a prior knows roughly, such as a modulus: found beside what each row feels.
+"""Estimation of numbers that all rows share, such as a modulus with a prior, together with the loads of each row.
 
-With these numbers p held, row i has its least cost C_i(p) at u_i(p), with the information H_i of (u_i, p) there. What
-the data say of p, whatever the rows feel, is by Laplace's approximation of the integral over u_i, with A = H_uu,
+With these numbers p held, row i has its least cost C_i(p) at u_i(p), with the information H_i of (u_i, p) there. The
+marginal likelihood of p follows by Laplace's approximation of the integral over u_i, with A = H_uu,
 
     −log p(data | p) = Σ C_i(p) + ½ log det A_i(p).
 
-Without the second term, the volume of what a row may feel, p would drift to where forces are small, the farther the
-more rows there are (J. Neyman, E. L. Scott, Econometrica 16, 1948, 1-32). The sum with the cost of the prior is least
-by Gauss and Newton's method, the volumes differentiated by differences of p; with B = H_up of a row
+Without the second term, the posterior volume of a row, p would drift to where forces are small, the farther the more
+rows there are (J. Neyman, E. L. Scott, Econometrica 16, 1948, 1-32). The sum with the cost of the prior is minimised by
+the Gauss–Newton method, with volumes differentiated by differences of p; with B = H_up of a row
 
     ∂²C_i/∂p² ≈ H_pp − Bᵀ A⁻¹ B,  cov(u_i) = A⁻¹ + G cov(p) Gᵀ  with  G = −A⁻¹ B.
 """
@@ -26,16 +26,16 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arrow_least_squares import Limits
 
 MOST_ROUNDS = 20
-"""Gauss–Newton steps of the shared numbers, in each of which all rows are found again."""
+"""Most Gauss–Newton steps of the shared numbers; each step solves all rows again."""
 
 MOST_TRIALS = 10
-"""Halvings of one step."""
+"""Most halvings of one step."""
 
 SETTLED = 1e-6
-"""Decrease of the cost, in squared deviations, that a step must promise to be worth taking."""
+"""Predicted decrease of the cost, in squared deviations, below which the search ends."""
 
 ASIDE = 0.2
-"""Deviations of the prior to either side by which volumes are differentiated."""
+"""Offset to either side, in deviations of the prior, of the differences of volumes."""
 
 Searched = tuple[Estimates, SecondBest | None]
 
@@ -45,11 +45,11 @@ class SharedNumbers:
     """Estimates of the numbers that all rows share.
 
     Attributes:
-        labels: their names.
-        units: of these.
+        labels: names of the numbers.
+        units: units of the numbers.
         values: the maxima a posteriori, shape (q,).
-        covariance: shape (q, q).
-        settled: whether no step within the bounds would lessen the cost.
+        covariance: covariance of the values, shape (q, q).
+        settled: whether no step within the bounds would reduce the cost.
     """
 
     labels: tuple[str, ...]
@@ -69,7 +69,7 @@ class SharedSearch:
     """The search for the numbers that all rows share.
 
     Attributes:
-        search: shared numbers ↦ the rows with these held; their own numbers stand before the shared ones.
+        search: shared numbers ↦ rows with these held, where the numbers of a row precede the shared ones.
         limits: bounds and priors of the shared numbers; each has a prior.
         own: bounds and priors of the numbers of each row.
     """
@@ -86,7 +86,7 @@ class SharedSearch:
             units: of these.
 
         Returns:
-            the rows; the shared numbers; what their uncertainty adds to the rows' covariances, shape (cases, k, k).
+            the rows; the shared numbers; the contribution of their uncertainty to covariances of rows, (cases, k, k).
         """
         limits = self.limits
         weights = limits.weight**2
@@ -134,7 +134,7 @@ class SharedSearch:
         return slope, curvature, moves
 
     def _volumes(self, found: Estimates) -> FloatArray:
-        """Half of log det A of each row, what stays at a bound left out, shape (cases,); NaN where not found."""
+        """Half of log det A of each row, without numbers at bounds, shape (cases,); NaN without an estimate."""
         volumes = np.full(len(found.outcome), np.nan)
         rows = found.outcome == 0
         matrices, _ = self._of_own(found)
@@ -143,7 +143,7 @@ class SharedSearch:
         return volumes
 
     def _of_own(self, found: Estimates) -> tuple[FloatArray, npt.NDArray[np.bool_]]:
-        """Information of rows with an estimate on their numbers, and which of these numbers are at no bound."""
+        """Information of rows with an estimate on their numbers, and mask of the numbers that are not at a bound."""
         k = len(self.own.lower)
         rows = found.outcome == 0
         free = ~self.own.at_end(found.unknowns[rows, :k])
@@ -151,7 +151,7 @@ class SharedSearch:
         return matrices + np.eye(k) * np.where(free, 0.0, 1.0)[:, :, None], free
 
     def _tried(self, values: FloatArray, step: FloatArray, found: Searched) -> tuple[FloatArray, Searched] | None:
-        """Values and rows a step on, or a part of it, where all costs together are less; None where they are not."""
+        """Try a step, or a part of it; return values and rows if the total cost is less, else None."""
         reach = self.limits.within_step(values)
         for trial in range(MOST_TRIALS):
             ahead = reach.clipped(values + step / 2**trial)
@@ -161,18 +161,18 @@ class SharedSearch:
         return None
 
     def _total(self, one: Searched, other: Searched, values: FloatArray) -> float:
-        """Costs and volumes of the rows that both have found, and the cost of the prior."""
+        """Total cost: costs and volumes of the rows that both searches have found, and the cost of the prior."""
         of_rows = one[0].cost + self._volumes(one[0])
         both = np.isfinite(of_rows) & np.isfinite(self._volumes(other[0]))
         apart = self.limits.residual(values)
         return float(of_rows[both].sum() + apart @ apart / 2)
 
     def _reduced(self, found: Estimates) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """The least costs of rows as functions of the shared numbers, to second order, where own numbers follow.
+        """Expand the least costs of rows in the shared numbers to second order, with the numbers of rows eliminated.
 
         Returns:
-            slope, the sum of their derivatives, shape (q,); the sum of their second derivatives, shape (q, q); and how
-            the numbers of each row move with the shared ones, shape (cases, k, q), 0 where not found.
+            slope, the sum of their derivatives, shape (q,); the sum of their second derivatives, shape (q, q); and
+            derivatives of the numbers of each row by the shared ones, shape (cases, k, q), 0 without an estimate.
         """
         k = len(self.own.lower)
         cases, numbers = found.unknowns.shape
@@ -190,14 +190,14 @@ class SharedSearch:
 
 
 def _step(curvature: FloatArray, slope: FloatArray, held: npt.NDArray[np.bool_]) -> FloatArray:
-    """Gauss and Newton's step, shape (q,), of the numbers that no bound holds."""
+    """Gauss–Newton step, shape (q,), of the numbers that no bound holds."""
     step = np.zeros_like(slope)
     step[~held] = -np.linalg.solve(curvature[np.ix_(~held, ~held)], slope[~held])
     return step
 
 
 def _solved(matrices: FloatArray, columns: FloatArray) -> FloatArray:
-    """Solutions by the pseudo-inverse: a direction that neither data nor priors see does not move."""
+    """Solve by the pseudo-inverse, so that directions without data and priors do not move."""
     sizes = np.sqrt(np.maximum(np.diagonal(matrices, axis1=1, axis2=2), np.finfo(float).tiny))
     scaled = matrices / (sizes[:, :, None] * sizes[:, None, :])
     inverse = np.linalg.pinv(scaled, rcond=1e-10, hermitian=True)

@@ -1,4 +1,4 @@
-"""Measured cases as arrays, the differences of all measurements as one function, and the library that answers rows."""
+"""Measured cases as arrays, the differences of all measurements as one function, and the library that solves rows."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from cosserat_casadi.scene.input_fields import AXES
 
 
 def sections_of(model: Model, cases: Sequence[Case]) -> dict[int, int]:
-    """Most rows of each measurement in one case, by the number of the measurement; none where it has no row."""
+    """Largest number of rows of each measurement in one case, by its index; measurements without rows are left out."""
     counts = {}
     for number in range(len(model.scene.measurements)):
         most = max((len(case.data.get(number, [])) for case in cases), default=0)
@@ -28,18 +28,18 @@ def sections_of(model: Model, cases: Sequence[Case]) -> dict[int, int]:
 
 
 def differences(model: Model, sections: dict[int, int], indices: Sequence[int], abscissae: FloatArray) -> ca.Function:
-    """The differences of all measurements as one function.
+    """Make the differences of all measurements as one function.
 
     Args:
         model: the measured model.
-        sections: rows of each measurement in one case, by its number.
-        indices: of the numbers that are found among the stacked inputs and the parameters behind them.
-        abscissae: of all cases, shape (cases, sections); an abscissa that is the same in all cases is a constant of the
+        sections: number of rows of each measurement in one case, by its index.
+        indices: indices of the estimated numbers among the stacked inputs, followed by parameters.
+        abscissae: abscissae of all cases, shape (cases, sections); one that is equal in all cases is a constant of the
             function.
 
     Returns:
-        (x, inputs, at, measured) ↦ differences, and their derivatives with x and with these numbers. Behind the inputs
-        stand the parameters.
+        (x, inputs, at, measured) ↦ differences, and their derivatives by x and by these numbers. Parameters are
+        appended to the inputs.
     """
     x = ca.MX.sym("x", model.size)
     given = ca.MX.sym("inputs", given_size(model))
@@ -70,7 +70,7 @@ def differences(model: Model, sections: dict[int, int], indices: Sequence[int], 
 
 
 def stacked(model: Model, cases: Sequence[Case], sections: dict[int, int]) -> MeasuredCases:
-    """The cases as arrays, in the order in which :func:`differences` takes them."""
+    """Convert the cases to arrays, in the order of :func:`differences`."""
     at: list[FloatArray] = []
     measured: list[FloatArray] = []
     weights: list[FloatArray] = []
@@ -91,8 +91,8 @@ def sensor_names(model: Model, sections: dict[int, int], abscissae: FloatArray) 
 
     Args:
         model: the measured model.
-        sections: rows of each measurement in one case, by its number.
-        abscissae: of all cases, shape (cases, sections).
+        sections: number of rows of each measurement in one case, by its index.
+        abscissae: abscissae of all cases, shape (cases, sections).
     """
     names = []
     first = 0
@@ -112,19 +112,19 @@ def sensor_names(model: Model, sections: dict[int, int], abscissae: FloatArray) 
 def row_library(
     model: Model, sections: dict[int, int], indices: Sequence[int], abscissae: FloatArray
 ) -> EstimatorLibrary:
-    """The library for rows of these sections; the model keeps it.
+    """Make the library for rows of these sections; the model keeps it.
 
     Writing it takes a second or more, thousands of times as long as a row takes in C.
 
     Args:
         model: the measured model.
-        sections: rows of each measurement in one case, by its number.
-        indices: of the numbers that are found among the stacked inputs and the parameters behind them.
-        abscissae: of all cases, shape (cases, sections); an abscissa that is the same in all cases is a constant of the
+        sections: number of rows of each measurement in one case, by its index.
+        indices: indices of the estimated numbers among the stacked inputs, followed by parameters.
+        abscissae: abscissae of all cases, shape (cases, sections); one that is equal in all cases is a constant of the
             library.
 
     Raises:
-        ExportError: two things of the scene would have one name in C.
+        ExportError: two parts of the scene would have one name in C.
     """
     same = np.ptp(abscissae, axis=0) == 0.0
     constant = np.where(same, abscissae[0], np.nan)

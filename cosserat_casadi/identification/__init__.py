@@ -1,4 +1,4 @@
-"""Identification: numbers of a scene from measurements, with the statistics of how well the data determine them.
+"""Identification of numbers of a scene from measurements, with statistics of their uncertainty.
 
 table ─▶ cases ─▶ misfit (equilibria, quantities) ─▶ fit ─▶ statistics ─▶ Identification
 """

@@ -1,9 +1,9 @@
 """Equilibria of all cases in exact contact, each with its contacts, and the differences from their measurements.
 
-While its contacts stay, a case is one system in z = (x, f, p): unknowns, forces and places of contact, with inputs and
-parameters as arguments (equilibrium/contact/contact_equations.py). Its equilibrium is followed there, judged at each
-step, and solved anew where a contact opens, closes or changes its kind. The misfit is continuous over such a change and
-its derivatives jump: derivatives with the contacts on this side are returned.
+For constant contacts, a case is one system in z = (x, f, p): unknowns, forces and places of contact, with inputs and
+parameters as arguments (equilibrium/contact/contact_equations.py). Its equilibrium is followed, judged at each step,
+and solved anew where a contact opens, closes or changes its kind. The misfit is continuous over such a change, but its
+derivatives jump: derivatives for the contacts on this side are returned.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class CaseInContact:
 
     Attributes:
         equations: equations of the case with its contacts, at its inputs and parameters.
-        z: their solution.
+        z: solution of the equations.
         found: the equilibrium with elements that end at the contacts.
     """
 
@@ -63,11 +63,11 @@ class CaseInContact:
         return judged(self.found, holds=True, iterations=0, tolerance=NewtonSettings().tolerance)
 
     def touches_otherwise(self, other: CaseInContact) -> bool:
-        """Whether another equilibrium has other contacts, so that derivatives jump between both."""
+        """Whether another equilibrium has other contacts, so that derivatives jump in between."""
         return self.found.state.signature != other.found.state.signature
 
     def difference(self, other: CaseInContact) -> str:
-        """Contacts of one of two equilibria alone, in words; empty where there are none."""
+        """Contacts of only one of two equilibria, in words; empty if both have equal contacts."""
         if not self.touches_otherwise(other):
             return ""
         kinds = [
@@ -81,17 +81,17 @@ class CaseInContact:
 
 @dataclass(frozen=True)
 class PointInContact(Point):
-    """Equilibria of all cases, of which x holds z and zeros behind it.
+    """Equilibria of all cases, whose x contains z, padded with zeros.
 
     Attributes:
-        cases: the equilibria; None where a case has none.
+        cases: the equilibria; None for a case without one.
     """
 
     cases: tuple[CaseInContact | None, ...]
 
     @classmethod
     def of(cls, cases: Sequence[CaseInContact | None], inputs: FloatArray, p: FloatArray) -> PointInContact:
-        """The equilibria at inputs, shape (cases, inputs), and parameters."""
+        """Make the point of equilibria at inputs, shape (cases, inputs), and parameters."""
         widest = max((len(case.z) for case in cases if case is not None), default=0)
         x = np.zeros((len(cases), widest))
         for row, case in zip(x, cases, strict=True):
@@ -101,32 +101,32 @@ class PointInContact(Point):
 
     @property
     def settled(self) -> list[CaseInContact]:
-        """The equilibria, where every case has one."""
+        """Return the equilibria, if every case has one."""
         settled = [case for case in self.cases if case is not None]
         assert len(settled) == len(self.cases), "cases without an equilibrium are left out before"
         return settled
 
     def chosen(self, kept: Sequence[int]) -> PointInContact:
-        """The equilibria of some cases."""
+        """Select the equilibria of some cases."""
         return PointInContact.of([self.cases[i] for i in kept], self.inputs[kept], self.p)
 
     def joined(self, other: Point) -> PointInContact:
-        """The equilibria of these cases, then of others at the same parameters."""
+        """Append equilibria of other cases at equal parameters."""
         assert isinstance(other, PointInContact)
         return PointInContact.of([*self.cases, *other.cases], np.concatenate([self.inputs, other.inputs]), self.p)
 
 
 class ContactEquilibria(Equilibria):
-    """The equilibria of all cases, each with its contacts."""
+    """Solver for the equilibria of all cases, each with its contacts."""
 
     model: Model
 
     def started(
         self, inputs: FloatArray, wanted: FloatArray, first_p: FloatArray, p: FloatArray
     ) -> tuple[PointInContact, list[str]]:
-        """The equilibria at wanted inputs and parameters, and why a case has none.
+        """Solve for equilibria at wanted inputs and parameters; also return why a case has none.
 
-        Each is sought near the one before, and from the unloaded rods where that has other contacts or is far.
+        Each equilibrium is sought near the one before, or from the unloaded rods if that has other contacts or is far.
         """
         cases: list[CaseInContact | None] = []
         reasons = []
@@ -145,13 +145,13 @@ class ContactEquilibria(Equilibria):
         return PointInContact.of(cases, wanted, p), reasons
 
     def at_point(self, point: Point) -> Point:
-        """The equilibria as they are: each knows its derivatives."""
+        """Return the equilibria unchanged, as each has its derivatives."""
         return point
 
     def tracked(
         self, near: Point, predicted: FloatArray, inputs: FloatArray, p: FloatArray, *, far: bool = True
     ) -> tuple[PointInContact, Flags]:
-        """The equilibria at other inputs and parameters, and which could be reached; as of :class:`Equilibria`."""
+        """Follow equilibria to other inputs and parameters; results as for :class:`Equilibria`."""
         assert isinstance(near, PointInContact)
         cases = []
         reached = []
@@ -162,7 +162,7 @@ class ContactEquilibria(Equilibria):
         return PointInContact.of(cases, inputs, p), np.array(reached)
 
     def sensitivities(self, point: Point, p_by_all: FloatArray, inputs_by_all: FloatArray) -> FloatArray:
-        """Derivatives of z with the unknowns that each case sees while contacts stay, zeros behind them."""
+        """Derivatives of z by the unknowns of each case for constant contacts, padded with zeros."""
         by_all = np.zeros((*point.x.shape, p_by_all.shape[1]))
         for rows, case, inputs_by in zip(by_all, _settled(point), inputs_by_all, strict=True):
             rows[: len(case.z)] = case.equations.moved(case.z, inputs_by, p_by_all)
@@ -171,7 +171,7 @@ class ContactEquilibria(Equilibria):
     def followed(
         self, case: CaseInContact, start: FloatArray, inputs: FloatArray, p: FloatArray
     ) -> CaseInContact | None:
-        """The equilibrium beside another one, with its contacts or with others; None where none is found."""
+        """Solve for the equilibrium near another one, with its contacts or with others; None if none is found."""
         equations = case.equations
         if np.array_equal(inputs, equations.given) and np.array_equal(p, equations.theta):
             return case
@@ -187,7 +187,7 @@ class ContactEquilibria(Equilibria):
             return None
 
     def _alike(self, case: CaseInContact, start: FloatArray, inputs: FloatArray, p: FloatArray) -> CaseInContact | None:
-        """The equilibrium beside another one with the same contacts, from a start z; None where they do not hold."""
+        """Solve for the equilibrium near another one with equal contacts, from a start z; None if these do not hold."""
         alike = self._judged(case.equations.at(inputs, p), start)
         if alike is None:
             return None
@@ -197,12 +197,12 @@ class ContactEquilibria(Equilibria):
         return alike if is_near and not passes_through(case.found.solution, alike.found.solution) else None
 
     def _solved(self, inputs: FloatArray, p: FloatArray) -> Solution:
-        """A search for the contacts, from the unloaded rods."""
+        """Search for the contacts, from the unloaded rods."""
         model = self.model.at(p)
         return solve_contact(model.scene.baked(), Grids(model.discretisation), model.inputs.unpack(inputs))
 
     def _settled(self, solution: Solution, inputs: FloatArray, p: FloatArray) -> CaseInContact | None:
-        """A solution as a case; None where the equations of its contacts do not lead to it."""
+        """Convert a solution to a case; None if the equations of its contacts do not lead to it."""
         state = state_in(solution.model.scene)
         kept: dict[object, ContactEquations] = kept_with(self.model, "_contact_equations", dict)
         scene = self.model.at(p).scene
@@ -221,11 +221,11 @@ class ContactEquilibria(Equilibria):
         return None
 
     def _equations(self, state: ContactState, scene: scenes.Scene) -> ContactEquations:
-        """The equations of a state, in the parameters of the model.
+        """Make the equations of a state of contact, in the parameters of the model.
 
         Args:
             state: the contacts.
-            scene: with numbers at which the state holds.
+            scene: scene with numbers at which the state is valid.
         """
         model = self.model
         own = model.scene
@@ -240,7 +240,7 @@ class ContactEquilibria(Equilibria):
         return Settling(scene, equations.given, equations.grids, NewtonSettings(), tolerance)
 
     def _judged(self, equations: ContactEquations, start: FloatArray) -> CaseInContact | None:
-        """The solution from a start z; None where Newton's method does not end, or contacts do not hold."""
+        """Solve from a start z; None if Newton's method does not converge, or contacts are not valid."""
         settling = self._settling(equations)
         z = settling.solved_from(equations, start)
         if z is None:
@@ -267,12 +267,12 @@ class ContactMisfit(Misfit):
         return [where for where, solution in self._told(state) if solution.outcome is Outcome.UNRESOLVED]
 
     def beyond_limits(self, state: MisfitState) -> list[tuple[str, BeyondLimit]]:
-        """Cases that are beyond a limit, and which limit that is."""
+        """Cases that are beyond a limit, each with that limit."""
         limits = [(where, first_beyond(own.model, own.x, own.inputs)) for where, own in self._told(state)]
         return [(where, limit) for where, limit in limits if limit is not None]
 
     def marginal(self, state: MisfitState) -> list[str]:
-        """Sentences on contacts that one side of each change of the unknowns alone meets."""
+        """Sentences on contacts that change for only one direction of each change of the unknowns."""
         sentences = []
         for where, solution in self._told(state):
             sentence = marginal_contact(solution)
@@ -281,12 +281,12 @@ class ContactMisfit(Misfit):
         return sentences
 
     def kinked(self, state: MisfitState, other: MisfitState) -> Flags:
-        """Whether a case has other contacts in one state than in another, shape (cases,)."""
+        """Mask of the cases whose contacts differ between two states, shape (cases,)."""
         pairs = zip(_settled(state.point), _settled(other.point), strict=True)
         return np.array([case.touches_otherwise(beside) for case, beside in pairs])
 
     def at_kink(self, state: MisfitState, other: MisfitState) -> list[str]:
-        """Contacts of one state alone, in words."""
+        """Contacts of only one of two states, in words."""
         triples = zip(self.cases, _settled(state.point), _settled(other.point), strict=True)
         return [f"{own.where}: {case.difference(beside)}" for own, case, beside in triples if case.difference(beside)]
 
@@ -321,7 +321,7 @@ class ContactMisfit(Misfit):
     def _rates(
         self, state: MisfitState, z_by_all: FloatArray, inputs_by_all: FloatArray, p_by_all: FloatArray
     ) -> FloatArray:
-        """Derivatives of the residual, whose contacts stay."""
+        """Derivatives of the residual for constant contacts."""
         settled = _settled(state.point)
         rates = []
         for number, i in self._blocks:

@@ -1,7 +1,7 @@
 """The equilibria of all cases at once, as functions of inputs and parameters, tracked as these change.
 
-Newton's method runs on all cases together, each with its own Jacobian, from what the sensitivities predict. A case that
-strays is followed along the straight line to the new inputs and parameters, with steps as long as it allows.
+Newton's method runs on all cases together, each with its own Jacobian, from the prediction of the sensitivities. A case
+that strays is followed along the straight line to the new inputs and parameters, with steps as long as it allows.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ from cosserat_casadi.tubes.tube_solve import solve_at
 from cosserat_casadi.tubes.tube_stability import stability_of as stability_of_tubes
 
 STEPS = 12
-"""Newton steps of all cases together; cases that have not converged by then are followed one by one."""
+"""Most Newton steps of all cases together; cases that have not converged by then are followed one by one."""
 
 CONTRACTION = 0.05
-"""Share of the residual that a step with an earlier Jacobian may leave; else the next one has a new Jacobian."""
+"""Largest ratio of residuals after and before a step with an old Jacobian at which the Jacobian is kept."""
 
 NOT_FOLLOWED = "Its equilibrium could not be followed to where the search begins."
-"""Why a case has none there."""
+"""Reason for a case without an equilibrium at the start of the search."""
 
 Flags = npt.NDArray[np.bool_]
 
@@ -46,7 +46,7 @@ class Point:
         x: unknowns, shape (cases, size).
         inputs: stacked inputs, shape (cases, size of the inputs).
         p: parameters, shape (size of the parameters,).
-        inverses: of Jacobians at or near x, shape (cases, size, size).
+        inverses: inverses of Jacobians at or near x, shape (cases, size, size).
     """
 
     x: FloatArray
@@ -69,10 +69,10 @@ class Equilibria:
     """The equations of all cases.
 
     Attributes:
-        model: of the scene, with its parameters.
+        model: model of the scene, with its parameters.
         cases: number of cases.
-        sought: which cases are to be in equilibrium, shape (cases,); the rest stay unloaded.
-        barred: cases of which a step was refused, for it led through a smooth bar, ball or rod, shape (cases,).
+        sought: mask of the cases that must be in equilibrium, shape (cases,); the others stay unloaded.
+        barred: mask of the cases with a refused step, through a smooth bar, ball or rod, shape (cases,).
     """
 
     def __init__(self, model: AnyModel, cases: int, unloaded: Flags | None = None) -> None:
@@ -83,10 +83,10 @@ class Equilibria:
         self._tolerance = NewtonSettings()
         self._mapped: dict[str, ca.Function] = {}
         self._watched = None if isinstance(model, TubeFunctions) or not SmoothBarriers(model).any else model
-        """The model where it has smooth bars, balls or rods that no step may lead through."""
+        """The model, if it has smooth bars, balls or rods through which no step may lead; else None."""
 
     def _over_cases(self, name: str, x: FloatArray, inputs: FloatArray, p: FloatArray) -> ca.DM:
-        """A function of the model at all cases, side by side; it is mapped when it is first asked for."""
+        """Evaluate a function of the model at all cases, side by side; it is mapped at its first use."""
         if name not in self._mapped:
             shared = [2] if self.model.parameters.size else []
             self._mapped[name] = getattr(self.model, name).map("mapped", "serial", self.cases, shared, [])
@@ -105,26 +105,26 @@ class Equilibria:
         return split(self._over_cases("jacobian", x, inputs, p), self.cases)
 
     def by_inputs(self, point: Point) -> FloatArray:
-        """Derivatives of the residuals with the inputs, shape (cases, size, size of the inputs)."""
+        """Derivatives of the residuals by the inputs, shape (cases, size, size of the inputs)."""
         return split(self._over_cases("input_jacobian", point.x, point.inputs, point.p), self.cases)
 
     def by_parameters(self, point: Point) -> FloatArray:
-        """Derivatives of the residuals with the parameters, shape (cases, size, size of the parameters)."""
+        """Derivatives of the residuals by the parameters, shape (cases, size, size of the parameters)."""
         return split(self._over_cases("parameter_jacobian", point.x, point.inputs, point.p), self.cases)
 
     def started(
         self, inputs: FloatArray, wanted: FloatArray, first_p: FloatArray, p: FloatArray
     ) -> tuple[Point, list[str]]:
-        """The equilibria from which a search begins, and why a case has none there.
+        """Solve for the equilibria from which a search begins; also return why a case has none there.
 
         Args:
-            inputs: values of the scene, which are solved first, shape (cases, size of the inputs).
-            wanted: inputs where the search begins, shape (cases, size of the inputs).
+            inputs: inputs of the scene, which are solved first, shape (cases, size of the inputs).
+            wanted: inputs at the start of the search, shape (cases, size of the inputs).
             first_p: parameters of the scene.
-            p: parameters where the search begins.
+            p: parameters at the start of the search.
 
         Returns:
-            the equilibria, and a sentence for each case, empty where it has one.
+            the equilibria, and a sentence for each case, empty if it has one.
         """
         point, outcomes = self.loaded(inputs, first_p)
         # From the scene's own numbers to the start, where a bound or another value moves it.
@@ -150,7 +150,7 @@ class Equilibria:
         return self.at_point(moved), reasons
 
     def loaded(self, inputs: FloatArray, p: FloatArray) -> tuple[Point, list[Outcome]]:
-        """The equilibria at the ends of the load paths, and how each path ended.
+        """Solve for the equilibria at the ends of load paths; also return the outcome of each path.
 
         Args:
             inputs: stacked inputs, shape (cases, size of the inputs).
@@ -167,7 +167,7 @@ class Equilibria:
         return Point(x, inputs, p, self._inverses(x, inputs, p)), outcomes
 
     def _loaded(self, inputs: FloatArray, p: FloatArray) -> tuple[FloatArray, Outcome]:
-        """The end of one load path, of tubes of that from straight ones, and how it ended."""
+        """Follow one load path, or the path from straight tubes; return its end and outcome."""
         model = self.model
         if isinstance(model, TubeFunctions):
             solution = solve_at(model.at(p), inputs)
@@ -189,16 +189,16 @@ class Equilibria:
         return inverses
 
     def at_point(self, point: Point) -> Point:
-        """The equilibria with inverse Jacobians that are computed at them."""
+        """Return the equilibria with inverse Jacobians that are computed at them."""
         return Point(point.x, point.inputs, point.p, self._inverses(point.x, point.inputs, point.p))
 
     def sensitivities(self, point: Point, p_by_all: FloatArray, inputs_by_all: FloatArray) -> FloatArray:
-        """Derivatives of the equilibria with the unknowns that each case sees, shape (cases, size, unknowns).
+        """Derivatives of the equilibria by the unknowns of each case, shape (cases, size, unknowns).
 
         Args:
             point: the equilibria, with Jacobians that are computed at them.
-            p_by_all: derivatives of the parameters with these unknowns, shape (parameters, unknowns).
-            inputs_by_all: of the inputs of each case, shape (cases, inputs, unknowns).
+            p_by_all: derivatives of the parameters by these unknowns, shape (parameters, unknowns).
+            inputs_by_all: derivatives of the inputs of each case, shape (cases, inputs, unknowns).
         """
         by_all = np.zeros((*point.x.shape, p_by_all.shape[1]))
         if np.any(p_by_all):
@@ -208,7 +208,7 @@ class Equilibria:
         return np.where(self.sought[:, None, None], -point.inverses @ by_all, 0.0)
 
     def unstable(self, point: Point) -> Flags:
-        """Which cases have an unstable equilibrium, where that has a meaning, shape (cases,)."""
+        """Mask of the cases with an unstable equilibrium, if stability has a meaning, shape (cases,)."""
         jacobians = self.jacobians(point.x, point.inputs, point.p)
         flags = np.zeros(self.cases, dtype=bool)
         is_stable = self._stability(point.p)
@@ -218,7 +218,7 @@ class Equilibria:
         return flags
 
     def _stability(self, p: FloatArray) -> Callable[[FloatArray, FloatArray, FloatArray], bool]:
-        """(x, inputs, Jacobian) ↦ whether an equilibrium with these parameters is stable."""
+        """Make (x, inputs, Jacobian) ↦ whether an equilibrium with these parameters is stable."""
         model = self.model
         if not isinstance(model, TubeFunctions):
             allowed = variations(model)
@@ -233,14 +233,14 @@ class Equilibria:
     def tracked(
         self, near: Point, predicted: FloatArray, inputs: FloatArray, p: FloatArray, *, far: bool = True
     ) -> tuple[Point, Flags]:
-        """The equilibria at other inputs and parameters, on the branches of those near, and which could be reached.
+        """Follow equilibria to other inputs and parameters on their branches; also return which were reached.
 
         Args:
-            near: equilibria to come from.
-            predicted: unknowns to begin with, shape (cases, size).
+            near: initial equilibria.
+            predicted: initial guess of the unknowns, shape (cases, size).
             inputs: stacked inputs, shape (cases, size of the inputs).
             p: parameters.
-            far: whether cases that Newton's method does not reach from there are followed along a path.
+            far: whether cases that Newton's method does not reach are followed along a path.
         """
         x, inverses, converged = self._newton(predicted, inputs, p, near.inverses)
         moved = np.linalg.norm((x - predicted)[:, self.model.shape_unknowns], axis=1)
@@ -257,7 +257,7 @@ class Equilibria:
     def _newton(
         self, start: FloatArray, inputs: FloatArray, p: FloatArray, inverses: FloatArray
     ) -> tuple[FloatArray, FloatArray, Flags]:
-        """Newton's method on all cases: unknowns, inverse Jacobians, and which cases converged."""
+        """Run Newton's method on all cases; return unknowns, inverse Jacobians, and the mask of converged cases."""
         x = start.copy()
         residual = self.residuals(x, inputs, p)
         norms = np.where(self.sought, _relative(residual, x), 0.0)
@@ -288,7 +288,7 @@ class Equilibria:
         return x, inverses, norms <= self._tolerance.tolerance
 
     def _path(self, near: Point, case: int, inputs: FloatArray, p: FloatArray) -> Path:
-        """The path of one case on the straight line to other inputs and parameters, past no obstacle."""
+        """Make the path of one case on the straight line to other inputs and parameters, through no obstacle."""
         model = self.model
         ends = (near.inputs[case], model.inputs.nearer(near.inputs[case], inputs))
         parameters = (near.p, model.parameters.nearer(near.p, p)) if model.parameters.size else None
@@ -296,7 +296,7 @@ class Equilibria:
         return path if isinstance(model, TubeFunctions) else past_no_obstacle(path, model, ends, parameters)
 
     def _barred(self, near: Point, x: FloatArray, inputs: FloatArray, p: FloatArray, reached: Flags) -> Flags:
-        """Which of the cases reached would go through a smooth bar, ball or rod on the way, shape (cases,)."""
+        """Mask of the reached cases that would pass through a smooth bar, ball or rod on the way, shape (cases,)."""
         barred: Flags = np.zeros(self.cases, dtype=bool)
         if self._watched is None:
             return barred
@@ -314,19 +314,19 @@ class Equilibria:
 
 
 def resolution_index(model: AnyModel, x: FloatArray, inputs: FloatArray, p: FloatArray) -> float:
-    """Resolution index, which is above 1 where the nodes do not resolve the rods, or the steps the tubes."""
+    """Resolution index, above 1 if the nodes do not resolve the rods, or the steps the tubes."""
     parameters: list[FloatArray] = [p] if model.parameters.size else []
     return float(model.resolution_index(x, inputs, *parameters))
 
 
 def split(columns: ca.DM, cases: int) -> FloatArray:
-    """Matrices side by side as an array, shape (cases, rows, columns)."""
+    """Split matrices side by side into an array, shape (cases, rows, columns)."""
     rows, width = columns.shape
     return np.asarray(columns.full().reshape(rows, cases, width // cases).transpose(1, 0, 2))
 
 
 def _relative(residual: FloatArray, x: FloatArray) -> FloatArray:
-    """Norms of the residuals over one plus norms of the unknowns, shape (cases,); infinite where not finite."""
+    """Norms of the residuals over one plus norms of the unknowns, shape (cases,); infinite if not finite."""
     with np.errstate(over="ignore", invalid="ignore"):
         norms = np.linalg.norm(residual, axis=1) / (1 + np.linalg.norm(x, axis=1))
     return np.where(np.isfinite(norms), norms, np.inf)

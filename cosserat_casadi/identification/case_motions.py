@@ -1,10 +1,10 @@
-"""Motions of the cases that were measured over time, by the steps of the simulator, and their exact sensitivities.
+"""Motions of cases that were measured over time, by the steps of the simulator, with exact sensitivities.
 
 The steps have one size, so that the path is a smooth function of the unknowns. A step solves F = 0 at its stages. With
 U, their accelerations and multipliers, and G = ∂F/∂U, dU = −G⁻¹ (F_x dx + F_v dv + F_inputs d inputs + F_p dp), and
-the end of the step and its polynomial are linear in x, v and U. These are derivatives of the path as it is computed,
-not of the equations of motion (E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd
-ed., Springer 1993, section I.14).
+the end of the step and its polynomial are linear in x, v and U. These are derivatives of the computed path, not of the
+solution of the equations of motion (E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I*,
+2nd ed., Springer 1993, section I.14).
 """
 
 from __future__ import annotations
@@ -36,19 +36,19 @@ from cosserat_casadi.numerics.step import StepPolynomial, TimeStep
 from cosserat_casadi.tubes.tube_functions import AnyModel
 
 FIRST_STEPS = 16
-"""Steps that the longest motion is first divided into; they are halved until their error is small enough."""
+"""First number of steps of the longest motion; steps are halved until their error is small enough."""
 
 COARSE = 1e-2
-"""Error of a step, over the length, of the motion that tells how long the first steps are."""
+"""Error of a step, over the length, in the motion that determines the size of the first steps."""
 
 Flags = npt.NDArray[np.bool_]
 
 
 class StartInputs:
-    """The inputs at the start of a motion: a case's inputs where nothing moves them.
+    """The inputs at the start of a motion: the inputs of the case, plus the motions of inputs at time 0.
 
     Attributes:
-        held: which inputs have no table over time, so that the values of the case count, shape (inputs,).
+        held: mask of the inputs without a table over time, for which the values of the case count, shape (inputs,).
     """
 
     def __init__(self, model: AnyModel) -> None:
@@ -58,24 +58,24 @@ class StartInputs:
             if motion.is_table:
                 self.held[model.inputs.slices[motion.input]] = False
         self.added = MovingInputs(model.inputs, motions, np.zeros(model.inputs.size)).at(0.0).value
-        """Values that motions add to the inputs, shape (inputs,)."""
+        """Values that motions add to the inputs at time 0, shape (inputs,)."""
 
     def of(self, inputs: FloatArray, moves: Flags) -> FloatArray:
-        """Inputs of all cases where their motions start, shape (cases, inputs).
+        """Inputs of all cases at the start of their motions, shape (cases, inputs).
 
         Args:
-            inputs: of all cases, shape (cases, inputs).
-            moves: which cases are motions, shape (cases,).
+            inputs: inputs of all cases, shape (cases, inputs).
+            moves: mask of the cases that are motions, shape (cases,).
         """
         started = np.where(self.held, inputs, 0.0) + self.added
         return np.where(moves[:, None], started, inputs)
 
 
 def check_motions(model: Model) -> None:
-    """Refuse motions whose path is no smooth function of the unknowns, or that are none.
+    """Refuse motions whose path is not a smooth function of the unknowns, and scenes without motions.
 
     Raises:
-        SceneError: with all that is wrong.
+        SceneError: the scene has such problems; the error lists all of them.
     """
     problems = immovable(model.at())
     if model.scene.velocities:
@@ -97,10 +97,10 @@ class Run:
     """A motion of one case at the times at which it was measured.
 
     Attributes:
-        times: ascending, shape (T,), s.
+        times: times, ascending, shape (T,), s.
         x: unknowns, shape (T, size).
-        inputs: shape (T, inputs).
-        history: the steps; None where all times are the start.
+        inputs: inputs, shape (T, inputs).
+        history: the steps; None if all times are the start.
         p: parameters.
     """
 
@@ -115,11 +115,11 @@ class Motions:
     """The motions of a model.
 
     Attributes:
-        model: with its parameters, and flows behind the unknowns where stress relaxes; of rods where there are times.
-        unknowns: number of the unknowns of an equilibrium.
+        model: model with its parameters, and with flows as unknowns if stress relaxes; of rods if there are times.
+        unknowns: number of unknowns of an equilibrium.
         start: inputs at the start.
-        times: at which each case was measured, by its number, ascending, s.
-        size: of the steps, s.
+        times: times at which each case was measured, by index of the case, ascending, s.
+        size: size of the steps, s.
     """
 
     def __init__(self, model: Any, times: Mapping[int, FloatArray]) -> None:
@@ -140,11 +140,11 @@ class Motions:
 
     @cached_property
     def _newton(self) -> FloatArray:
-        """Error of each unknown that Newton's method may leave, shape (size,)."""
+        """Allowed error of Newton's method in each unknown, shape (size,)."""
         return EXACT / displacements(self.model.at())
 
     def run(self, case: int, x: FloatArray, inputs: FloatArray, p: FloatArray) -> Run | None:
-        """The motion of a case; None where its steps cannot be solved.
+        """Compute the motion of a case; None if its steps cannot be solved.
 
         Args:
             case: its number.
@@ -167,7 +167,7 @@ class Motions:
         return Run(times, path[:, : self.unknowns], inputs_over_time, history, p)
 
     def suggest_size(self, case: int, x: FloatArray, inputs: FloatArray, p: FloatArray) -> None:
-        """Begin with the mean step of a motion that is integrated to a coarse tolerance."""
+        """Set the step size to the mean step of a motion that is integrated to a coarse tolerance."""
         end = float(self.times[case][-1])
         if end == 0.0:
             return
@@ -186,7 +186,7 @@ class Motions:
         return integrated(self.model, moving.pieces(end), start, still, self._method, settings, p=parameters)
 
     def told_passage(self, run: Run) -> str:
-        """A sentence where rods or bodies pass through smooth obstacles or rods in a motion; else nothing."""
+        """Sentence on rods or bodies that pass through smooth obstacles or rods in a motion; empty if none does."""
         if run.history is None or not SmoothBarriers(self.model).any:
             return ""
         return told_passage(run.history, float(run.times[-1]), self.model.at(run.p))
@@ -196,9 +196,9 @@ class Motions:
 
         Args:
             run: the motion.
-            x: derivatives of the start with m numbers, shape (size, m).
-            inputs: of the inputs of the case, shape (inputs, m).
-            p: of the parameters, shape (parameters, m).
+            x: derivatives of the start by m numbers, shape (size, m).
+            inputs: derivatives of the inputs of the case, shape (inputs, m).
+            p: derivatives of the parameters, shape (parameters, m).
         """
         by_inputs = inputs * self.start.held[:, None]
         differential = self.model.discrete.unknowns.differential
@@ -227,7 +227,7 @@ class Motions:
         return moved[:, : self.unknowns], by_inputs
 
     def _stage_responses(self, run: Run, inputs: FloatArray, p: FloatArray) -> list[FloatArray]:
-        """How the unknowns of the stages of every step follow from its start and from the numbers themselves."""
+        """Derivatives of the unknowns of the stages of every step by its start and by the numbers themselves."""
         assert run.history is not None
         steps = run.history.steps
         method = self._method
@@ -250,9 +250,9 @@ class Motions:
         ]
 
     def _linearised(self, count: int, numbers: int) -> ca.Function:
-        """(x, v, a, inputs, their rates and accelerations, p, p by numbers, inputs by numbers) ↦ derivatives of F.
+        """Make (x, v, a, inputs, their rates and accelerations, p, p by numbers, inputs by numbers) ↦ derivatives of F.
 
-        With x, v, a, and with the numbers that inputs and parameters depend on; for so many instants side by side.
+        The derivatives are by x, v, a, and by the numbers that determine inputs and parameters, at ``count`` instants.
         """
         key = (count, numbers)
         if key in self._sensitivities:
@@ -292,21 +292,21 @@ def _stage_response(
     mass: FloatArray,
     change: FloatArray,
 ) -> FloatArray:
-    """Derivatives of the unknowns of the stages of a step with x and v at its start and with m numbers.
+    """Derivatives of the unknowns of the stages of a step by x and v at its start and by m numbers.
 
     The linear equations of the stages are solved for them.
 
     Args:
         step: the step.
         method: the collocation method.
-        differential: which entries have accelerations, shape (n,).
+        differential: mask of the entries with accelerations, shape (n,).
         stiffness: ∂F/∂x at each stage, shape (s, n, n).
         damping: ∂F/∂v at each stage, shape (s, n, n).
         mass: ∂F/∂a at each stage, shape (s, n, n).
-        change: of F with the numbers themselves, by inputs and parameters, shape (s, n, m).
+        change: derivatives of F by the numbers, through inputs and parameters, shape (s, n, m).
 
     Returns:
-        side by side, shape (s, n, 2 n + m).
+        the derivatives side by side, shape (s, n, 2 n + m).
     """
     count, size, _ = stiffness.shape
     h = step.size

@@ -1,4 +1,4 @@
-"""Lengths of the steps of measured motions: their error counts in standard deviations of the measurements."""
+"""Step sizes of measured motions, by their error in standard deviations of the measurements."""
 
 from __future__ import annotations
 
@@ -9,41 +9,41 @@ from cosserat_casadi.motion.fall_of_errors import HALVED, LEFT_BY_HALF
 from cosserat_casadi.tubes.tube_functions import AnyModel
 
 STEP_ERROR = 0.05
-"""Error that the steps leave in any number that was measured, in standard deviations, that is small enough."""
+"""Largest error of any measured number by the steps, in standard deviations."""
 
 SPARE = 0.2
-"""Share of the error of the steps which longer steps aim at."""
+"""Share of that error at which longer steps aim."""
 
 ORDER = 4.0
-"""Least power of the step that the error of the steps goes with."""
+"""Least power of the step size with which the error falls."""
 
 MOST_LONGER = 4.0
-"""Most that steps are made longer at once."""
+"""Largest factor by which steps are lengthened at once."""
 
 TINY = 1e-9
-"""Error, in standard deviations, below which all steps are alike."""
+"""Error, in standard deviations, below which step sizes make no difference."""
 
 MOST_HALVINGS = 9
-"""Times that the first steps are halved before they are taken as they are."""
+"""Most halvings of the first steps."""
 
 
 def given_steps(model: AnyModel) -> bool:
-    """Whether the scene says how long the steps are."""
+    """Whether the scene prescribes the step size."""
     simulation = model.scene.simulation
     return simulation is not None and simulation.step is not None
 
 
 def error_of_steps(misfit: Misfit, state: MisfitState) -> float:
-    """Largest error of a residual by the length of the steps, from half of it; 0 where nothing moves."""
+    """Estimate the largest error of a residual by the steps, from steps of half the size; 0 if nothing moves."""
     return HALVED * _distance_to_half(misfit, state)[0] if misfit.motions.times else 0.0
 
 
 def with_steps(misfit: Misfit, state: MisfitState) -> MisfitState:
-    """The state with steps that are short enough; steps that the scene prescribes are kept.
+    """Return the state with sufficiently short steps; steps that the scene prescribes are kept.
 
     Args:
-        misfit: its steps are shortened.
-        state: with its present steps.
+        misfit: misfit whose steps are shortened.
+        state: state with the present steps.
     """
     if not misfit.motions.times or given_steps(misfit.model):
         return state
@@ -68,7 +68,7 @@ def with_steps(misfit: Misfit, state: MisfitState) -> MisfitState:
 
 
 def _distance_to_half(misfit: Misfit, state: MisfitState) -> tuple[float, MisfitState]:
-    """Largest change of a residual where the steps are half as long, and the state with these."""
+    """Largest change of a residual by halving the steps, and the state with the halved steps."""
     misfit.motions.size /= 2.0
     finer = misfit.first(state.point, state.shared, state.own)
     misfit.motions.size *= 2.0

@@ -1,4 +1,4 @@
-"""Statistics, remarks and warnings from the end of a search."""
+"""Statistics, remarks and warnings on the result of a search."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ from cosserat_casadi.spelling import counted, named
 from cosserat_casadi.tubes.tube_functions import AnyModel
 
 POOR = 2.0
-"""Root mean square of the residuals, in standard deviations, beyond which the model does not explain the data."""
+"""Root mean square of the residuals, in standard deviations, above which the model does not explain the data."""
 
 
 def without_equilibrium(
     model: AnyModel, layout: UnknownLayout, left_out: Sequence[LeftOut], *, stopped: bool
 ) -> Identification:
-    """The end where cases have no equilibrium.
+    """Make the result of an identification with cases that have no equilibrium.
 
     Args:
         model: the model that was to be fitted.
         layout: the unknowns.
         left_out: the cases without equilibrium.
-        stopped: whether others have one, and the scene asks for all.
+        stopped: whether other cases have one, but the scene requires all.
     """
     cases = named([case.where for case in left_out])
     reason = left_out[0].reason
@@ -75,12 +75,12 @@ def without_equilibrium(
 
 @dataclass(frozen=True)
 class Ending:
-    """The end of a search.
+    """Result of a search.
 
     Attributes:
-        misfit: of the cases that took part.
-        fit: where it ended.
-        known: how well the unknowns are known there.
+        misfit: misfit of the cases that took part.
+        fit: result of the fit.
+        known: statistics of the unknowns there.
         left_out: cases that took no part.
     """
 
@@ -91,7 +91,7 @@ class Ending:
 
     @cached_property
     def kinks(self) -> list[str]:
-        """Contacts that come or go, or change, where the search ended."""
+        """Contacts that open, close or change at the result of the search."""
         if self.fit.beyond is None or self.fit.outcome is FitOutcome.CONVERGED:
             return []
         return self.misfit.at_kink(self.fit.state, self.fit.beyond)
@@ -99,13 +99,13 @@ class Ending:
     def concluded(
         self, rows: Sequence[Row], warnings: Sequence[str], starts: tuple[int, int], step_error: float
     ) -> Identification:
-        """The end with its remarks.
+        """Make the identification with its remarks.
 
         Args:
-            rows: every measured number beside the model's.
-            warnings: sentences on what looks wrong, before the remarks.
-            starts: how many there were, and how many ended here.
-            step_error: of a residual, by the steps of the motions.
+            rows: every measured number with that of the model.
+            warnings: warnings that precede the remarks.
+            starts: number of starts, and number of starts that ended here.
+            step_error: error of a residual by the steps of the motions.
         """
         fit, misfit = self.fit, self.misfit
         layout = misfit.layout
@@ -140,7 +140,7 @@ class Ending:
         return replace(draft, warnings=(*warnings, *self._remarks(draft)))
 
     def _outcome(self) -> tuple[str, str]:
-        """How the search ended, in a word and in sentences."""
+        """Outcome of the search, in a word and in sentences."""
         fit, misfit, known = self.fit, self.misfit, self.known
         if fit.outcome not in (FitOutcome.CONVERGED, FitOutcome.AT_KINK):
             remedy = ""
@@ -213,7 +213,7 @@ class Ending:
 
 
 def _on_own_unknowns(found: Identification) -> list[str]:
-    """Remarks on unknowns of single cases: what their data leave open, and what that means for held-out cases."""
+    """Remarks on unknowns of single cases that their data leave undetermined, and the effect on held-out cases."""
     remarks = []
     for label, deviations in zip(found.layout.own_labels, found.statistics.own.T, strict=True):
         open_in = [where for where, sigma in zip(found.cases, deviations, strict=True) if np.isnan(sigma)]
@@ -231,7 +231,7 @@ def _on_own_unknowns(found: Identification) -> list[str]:
 
 
 def _on_joint_modes(found: Identification, joint_modes: Sequence[JointModes]) -> list[str]:
-    """Measured modes of one frequency, and what would part them."""
+    """Remarks on measured modes of one frequency, and on the unknowns that would separate them."""
     remarks = []
     for numbers in dict.fromkeys(joint.numbers for joint in joint_modes):
         alike = [joint for joint in joint_modes if joint.numbers == numbers]
@@ -250,7 +250,7 @@ def _on_joint_modes(found: Identification, joint_modes: Sequence[JointModes]) ->
 
 
 def described(direction: Direction) -> str:
-    """A direction in words, such as ``−0.97 a + 0.24 b``."""
+    """Describe a direction in words, such as ``−0.97 a + 0.24 b``."""
     terms = []
     for name, part in sorted(direction.parts.items(), key=lambda item: -abs(item[1])):
         sign = "−" if part < 0 else "+"

@@ -1,4 +1,4 @@
-"""One identification: equilibria and motions at the start, searches, their end, and the statistics there."""
+"""One identification: equilibria and motions at the start, searches, results, and their statistics."""
 
 from __future__ import annotations
 
@@ -30,28 +30,28 @@ SEED = 16
 """Seed of the draw of cases that are held out, and of the random starts."""
 
 DECADES = 10.0
-"""Ratio of the bounds from which on starts are spread over their logarithm."""
+"""Ratio of the bounds above which starts are spread over the logarithm."""
 
 SAME_COST = 1e-3
-"""Difference of half the sums of squares within which two starts have ended at one optimum."""
+"""Difference of half the sums of squares up to which two starts count as having found one optimum."""
 
 NEAREST = 0.05
-"""Share of the way to a start at which it is given up, and the search begins where the first one does."""
+"""Share of the way to a start below which the start is given up, and the search begins at the first one."""
 
 NOT_SWINGING = "A mode that was measured does not swing there."
-"""Why a case takes no part in the fit although it has an equilibrium."""
+"""Reason for leaving out a case that has an equilibrium."""
 
 NOT_MOVING = "The steps of its motion cannot be solved there."
-"""Why a motion takes no part in the fit."""
+"""Reason for leaving out a motion."""
 
 MOST_RETRIES = 3
-"""Times that cases without an equilibrium or motion are tried again, at the fitted numbers."""
+"""Most retries of cases without an equilibrium or motion, at the fitted numbers."""
 
 MOST_SHORTENINGS = 3
-"""Times that the search is made again with half the step."""
+"""Most repetitions of the search with half the step."""
 
 Progress = Callable[[int, float], None]
-"""Told the number of steps and half the sum of squares."""
+"""Callback with the number of steps and half the sum of squares."""
 
 
 _Missing = list[tuple[Case, str]]
@@ -59,7 +59,7 @@ _Missing = list[tuple[Case, str]]
 
 
 _Started = tuple[Misfit, MisfitState]
-"""Cases that take part, and their state at unknowns to begin with."""
+"""Misfit of the cases that take part, and their state at the initial unknowns."""
 
 
 @dataclass(frozen=True)
@@ -67,13 +67,13 @@ class Task:
     """An identification.
 
     Attributes:
-        model: with the unknowns.
+        model: model with the unknowns.
         layout: the unknowns.
-        loss: what residuals cost.
-        options: of the scene.
-        starts: places from which the search begins.
-        report: called with the work under way.
-        progress: told the steps of the search.
+        loss: cost of residuals.
+        options: options of the scene.
+        starts: number of starts of the search.
+        report: callback with the work under way.
+        progress: callback with the steps of the search.
     """
 
     model: AnyModel
@@ -85,7 +85,7 @@ class Task:
     progress: Progress | None
 
     def run(self, fitted: Sequence[Case], held_out: Sequence[Case]) -> Identification:
-        """Fit some cases, predict others."""
+        """Fit some cases, and predict others."""
         self.report("solving all cases")
         shared, _ = self.layout.start(len(fitted))
         started, missing = self._first(fitted, shared)
@@ -112,7 +112,7 @@ class Task:
         return ending.concluded(rows, warnings, (self.starts, ended_here), step_error)
 
     def _first(self, cases: Sequence[Case], shared: FloatArray) -> tuple[_Started | None, _Missing]:
-        """The misfit of the cases that have an equilibrium or a motion at the start, and the other cases."""
+        """Make the misfit of the cases that have an equilibrium or a motion at the start; also return the others."""
         _, own = self.layout.start(len(cases))
         moves = moving(cases)
         start = StartInputs(self.model)
@@ -153,7 +153,7 @@ class Task:
     def _with_others(
         self, misfit: Misfit, fit: Fit[MisfitState], missing: _Missing
     ) -> tuple[Misfit, Fit[MisfitState], _Missing]:
-        """The search again, with cases that had no equilibrium at the start and have one at the fitted numbers."""
+        """Repeat the search with cases that had no equilibrium at the start but have one at the fitted numbers."""
         for _ in range(MOST_RETRIES):
             if not missing:
                 break
@@ -175,7 +175,7 @@ class Task:
         return misfit, fit, missing
 
     def _with_short_steps(self, misfit: Misfit, fit: Fit[MisfitState]) -> tuple[Fit[MisfitState], float]:
-        """The search again with shorter steps, where the steps of the start are too long at the fitted numbers."""
+        """Repeat the search with shorter steps, if the steps of the start are too long at the fitted numbers."""
         error = error_of_steps(misfit, fit.state)
         for _ in range(MOST_SHORTENINGS):
             if error <= STEP_ERROR or given_steps(self.model):
@@ -192,7 +192,7 @@ class Task:
         return ArrowFit(misfit, limits, self.layout.own_limits, self.loss, kinked=misfit.kinked)
 
     def _best(self, misfit: Misfit, first: MisfitState) -> tuple[Fit[MisfitState], int]:
-        """The best fit of all starts, and how many starts ended there."""
+        """Find the best fit of all starts, and the number of starts that ended there."""
         arrow_fit = self._arrow_fit(misfit)
         misfit.jacobian(first)
         fits = []
@@ -205,7 +205,7 @@ class Task:
         return best, len(alike)
 
     def _towards(self, misfit: Misfit, first: MisfitState, shared: FloatArray) -> MisfitState:
-        """The state at a start, or as far on the way to it as all cases can be followed."""
+        """Follow all cases to a start, or as far on the way to it as possible; return the state."""
         ratios = self.layout.shared_limits.ratios
         share = 1.0
         while share > NEAREST:
@@ -218,7 +218,7 @@ class Task:
         return first
 
     def _start_points(self, first: FloatArray) -> list[FloatArray]:
-        """Where the searches begin: at the scene's values, then at random between bounds or from priors."""
+        """Starts of the searches: at the scene's values, then at random between bounds or from priors."""
         limits = self.layout.shared_limits
         rng = np.random.default_rng(SEED)
         points = [first]
@@ -252,7 +252,7 @@ class Task:
 
     @property
     def _noise_from(self) -> NoiseFrom:
-        """Where the noise of intervals is from: a loss for outliers says that sigma does not tell all of it."""
+        """Source of the noise of intervals; a loss for outliers means that sigma does not describe all of it."""
         if self.options.noise == "residual":
             return NoiseFrom.RESIDUALS
         if self.loss.kind == "squares":
@@ -260,7 +260,7 @@ class Task:
         return NoiseFrom.BOTH
 
     def _predicted(self, cases: Sequence[Case], fit: Fit[MisfitState], left_out: list[LeftOut]) -> _Started | None:
-        """Held-out cases at the fitted numbers; unknowns of single cases are fitted to the cases' data."""
+        """Predict held-out cases at the fitted numbers; unknowns of single cases are fitted to the cases' data."""
         if not cases:
             return None
         started, failed = self._first(cases, fit.shared)
@@ -274,7 +274,7 @@ class Task:
         return misfit, self._arrow_fit(misfit, held).run(fit.shared, state.own, state).state
 
     def _rows(self, misfit: Misfit, state: MisfitState, *, held_out: bool) -> list[Row]:
-        """Every measured number beside the model's."""
+        """Every measured number with that of the model."""
         rows = []
         for number, measured in misfit.measurements.items():
             residual = misfit.residual_of(measured, state)
@@ -304,7 +304,7 @@ FAR = 3.0
 
 
 def _wide_bounds(model: AnyModel, layout: UnknownLayout) -> Iterator[str]:
-    """Sizes of a section whose range begins above the length of the rod."""
+    """Warnings of sizes of a section whose range begins above the length of the rod."""
     rods = {rod.name: rod for rod in model.scene.rods}
     for entry in layout.shared:
         owner, _, key = entry.record.name.partition(".")
@@ -318,11 +318,11 @@ def _wide_bounds(model: AnyModel, layout: UnknownLayout) -> Iterator[str]:
 
 
 def far_positions(scene: scenes.Scene, entries: Sequence[tuple[int, int, float]]) -> Iterator[str]:
-    """Sentences on measured positions that no rod reaches.
+    """Warnings of measured positions that no rod reaches.
 
     Args:
-        scene: whose measurements they are.
-        entries: number of the measurement, number of its entry, and the measured number.
+        scene: scene of the measurements.
+        entries: index of the measurement, index of its entry, and the measured number.
     """
     length = sum(rod.length for rod in scene.rods) + sum(tube.length for tube in scene.tubes)
     places = [rod.base.position for rod in scene.rods]

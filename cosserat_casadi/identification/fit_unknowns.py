@@ -1,4 +1,4 @@
-"""Unknowns of an identification as two vectors: unknowns that all cases share, and unknowns of each case.
+"""Unknowns of an identification as two vectors: those shared by all cases, and those of each case.
 
 An unknown is one number or several. The quaternion of a base is three: the rotation vector, world axes, from the
 scene's value. All others are the numbers of the scene themselves.
@@ -23,7 +23,7 @@ from cosserat_casadi.scene.orientations import quaternion_about
 from cosserat_casadi.tubes.tube_functions import AnyModel
 
 TURN = 1e-4
-"""Angle below which the derivative of a quaternion with its rotation vector is taken from the series."""
+"""Angle below which the derivative of a quaternion by its rotation vector is taken from the series."""
 
 
 @dataclass(frozen=True)
@@ -31,12 +31,12 @@ class UnknownEntry:
     """One unknown of the scene.
 
     Attributes:
-        record: as the scene has it.
+        record: record in the scene.
         labels: names of its numbers.
-        unit: of each.
-        indices: places of its numbers in the stacked parameters, or in the stacked inputs.
-        start: the scene's values there, shape (entries,).
-        turns: whether it is a quaternion, of which the rotation vector is found.
+        unit: unit of each number.
+        indices: indices of its numbers in the stacked parameters, or in the stacked inputs.
+        start: values in the scene, shape (entries,).
+        turns: whether it is a quaternion, whose rotation vector is found.
         scales: a typical size of each number, shape (n,).
         positive: whether no number may be negative.
     """
@@ -57,7 +57,7 @@ class UnknownEntry:
 
     @property
     def size(self) -> int:
-        """How many numbers are found."""
+        """Number of numbers in the search."""
         return len(self.labels)
 
     def values(self, found: FloatArray) -> FloatArray:
@@ -67,7 +67,7 @@ class UnknownEntry:
         return _product_matrix(self.start) @ quaternion_about(found)
 
     def derivative(self, found: FloatArray) -> FloatArray:
-        """Derivative of the values with the numbers of the search, (entries, n)."""
+        """Derivative of the values by the numbers of the search, shape (entries, n)."""
         if not self.turns:
             return np.eye(self.size)
         return _product_matrix(self.start) @ _quaternion_derivative(found)
@@ -78,10 +78,10 @@ class UnknownEntry:
         return np.zeros(3) if self.turns else self.start.copy()
 
     def limits(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Least values, largest values, expected values and reciprocals of their deviations; each of shape (n,).
+        """Least values, largest values, expected values and reciprocal standard deviations; each of shape (n,).
 
         Raises:
-            SceneError: the scene gives another number of values.
+            SceneError: the scene has a wrong number of values.
         """
         record = self.record
         lower = self._spread("lower", record.lower, -np.inf)
@@ -138,13 +138,13 @@ class UnknownLayout:
         return _limits(self.own)
 
     def start(self, cases: int) -> tuple[FloatArray, FloatArray]:
-        """The scene's values, brought into the bounds: shared numbers, (n,), and numbers of each case, (cases, k)."""
+        """The scene's values, clipped to the bounds: shared numbers, (n,), and numbers of each case, (cases, k)."""
         shared = np.concatenate([np.zeros(0), *(entry.start_numbers for entry in self.shared)])
         own = np.concatenate([np.zeros(0), *(entry.start_numbers for entry in self.own)])
         return self.shared_limits.clipped(shared), np.tile(self.own_limits.clipped(own), (cases, 1))
 
     def scales(self, shared: FloatArray) -> FloatArray:
-        """Sizes that changes of the shared numbers are compared with, shape (n,): their values, or typical ones."""
+        """Sizes for comparison with changes of the shared numbers, shape (n,): their values, or typical sizes."""
         typical = np.concatenate([np.zeros(0), *(entry.scales for entry in self.shared)])
         values = np.abs(shared)
         by_ratio = self.shared_limits.ratios & (values > 0)
@@ -169,7 +169,7 @@ class UnknownLayout:
         Args:
             shared: shared numbers, shape (n,).
             own: numbers of each case, shape (cases, k).
-            measured: inputs that columns set, and the scene's values of other inputs, shape as the result.
+            measured: inputs set by columns, and the scene's values of other inputs, shape as the result.
         """
         inputs = measured.copy()
         for entry, found in parts(self.shared, shared):
@@ -181,7 +181,7 @@ class UnknownLayout:
         return inputs
 
     def derivatives(self, shared: FloatArray, own: FloatArray, inputs: int) -> tuple[FloatArray, FloatArray]:
-        """Derivatives with the shared numbers, then with the numbers of a case.
+        """Derivatives by the shared numbers, then by the numbers of a case.
 
         Args:
             shared: shared numbers, shape (n,).
@@ -189,8 +189,8 @@ class UnknownLayout:
             inputs: size of the inputs.
 
         Returns:
-            of the parameters, shape (size of the parameters, n + k), and of the inputs of each case, shape
-            (cases, inputs, n + k).
+            derivatives of the parameters, shape (size of the parameters, n + k), and of the inputs of each case,
+            shape (cases, inputs, n + k).
         """
         count = len(self.shared_labels) + len(self.own_labels)
         of_parameters = np.zeros((len(self.p), count))
@@ -204,13 +204,13 @@ class UnknownLayout:
         return of_parameters, of_inputs
 
     def identified(self, shared: FloatArray, *, of_input: bool) -> dict[str, FloatArray]:
-        """Values by name of the shared parameters, or inputs, that were found, in the shape that the model takes."""
+        """Identified values of the shared parameters, or inputs, by name, in the shape that the model takes."""
         found = parts(self.shared, shared)
         return {entry.record.name: entry.values(own) for entry, own in found if entry.of_input is of_input}
 
 
 def parts(entries: Sequence[UnknownEntry], stacked: FloatArray) -> list[tuple[UnknownEntry, FloatArray]]:
-    """Unknowns, each with its numbers out of the stacked numbers of all."""
+    """Split the stacked numbers of all unknowns by unknown."""
     ends = np.cumsum([entry.size for entry in entries]).tolist()
     return [(entry, stacked[end - entry.size : end]) for entry, end in zip(entries, ends, strict=True)]
 
@@ -224,10 +224,10 @@ def _limits(entries: Sequence[UnknownEntry]) -> Limits:
 
 
 def unknown_layout(model: AnyModel) -> UnknownLayout:
-    """The unknowns of a model's scene.
+    """Collect the unknowns of a model's scene.
 
     Raises:
-        SceneError: there are none, or the model has no such parameter or input.
+        SceneError: there are no unknowns, or the model has no such parameter or input.
     """
     scene = model.scene
     problems = []
@@ -268,10 +268,10 @@ def unknown_layout(model: AnyModel) -> UnknownLayout:
 
 
 def refuse_row_parameters(scene: scenes.Scene) -> None:
-    """Refuse parameters that are unknown anew in each case: an identification has inputs for that.
+    """Refuse parameters with a separate unknown value in each case; an identification has inputs for that.
 
     Raises:
-        SceneError: with every such unknown.
+        SceneError: there are such unknowns; the error lists all of them.
     """
     problem = "a parameter is the same in all cases of an identification"
     remedy = "leave per_row out, name an input, or find it with cosserat estimate"
@@ -293,11 +293,11 @@ def _entry(
     """One unknown.
 
     Args:
-        model: has the parameter or the input.
-        record: as the scene has it.
-        places: of its numbers in the stacked parameters, or in the stacked inputs.
-        parameter: the parameter that is unknown; None where an input is.
-        typical: sizes of what may have any sign, by unit.
+        model: model with the parameter or the input.
+        record: record in the scene.
+        places: indices of its numbers in the stacked parameters, or in the stacked inputs.
+        parameter: the unknown parameter; None for an unknown input.
+        typical: typical sizes of numbers that may have any sign, by unit.
     """
     if parameter is not None:
         labels = parameter.cell_names
@@ -328,7 +328,7 @@ def _entry(
 
 
 def _is_positive(model: AnyModel, parameter: scenes.NamedNumbers) -> bool:
-    """Whether the scene refuses the parameter with the other sign."""
+    """Whether the scene refuses the parameter with the opposite sign."""
     if not np.all(parameter.default > 0):
         return False
     try:
@@ -339,7 +339,7 @@ def _is_positive(model: AnyModel, parameter: scenes.NamedNumbers) -> bool:
 
 
 def _typical_sizes(model: AnyModel) -> dict[str, float]:
-    """Sizes of what may have any sign, by unit: of a rod or a tube that is bent by about a radian."""
+    """Typical sizes of numbers that may have any sign, by unit, for a rod or tube bent by about a radian."""
     length, energy = model.typical_sizes
     return {
         "1": 1.0,
@@ -368,6 +368,6 @@ def _quaternion_derivative(vector: FloatArray) -> FloatArray:
 
 
 def _product_matrix(q: FloatArray) -> FloatArray:
-    """The matrix M of e ⊗ q = M e, from the rules of report (A.13)."""
+    """Matrix M of e ⊗ q = M e, from the rules of report (A.13)."""
     w, x, y, z = q
     return np.array([[w, -x, -y, -z], [x, w, z, -y], [y, -z, w, x], [z, y, -x, w]])

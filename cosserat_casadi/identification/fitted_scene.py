@@ -1,4 +1,4 @@
-"""The scene with the numbers that were found."""
+"""The scene with the identified numbers."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from cosserat_casadi.tubes.tube_functions import AnyModel
 
 
 def with_identified(scene: scenes.Scene, model: AnyModel, layout: UnknownLayout, shared: FloatArray) -> scenes.Scene:
-    """A scene with the identified values of its parameters and of the inputs that all cases share.
+    """Make a scene with the identified values of its parameters and of the inputs that all cases share.
 
     Args:
-        scene: the scene whose unknowns they are, with or without its own inputs and parameters.
+        scene: the scene of the unknowns, with or without inputs and parameters.
         model: the fitted model.
         layout: the unknowns.
-        shared: their identified values, shape (n,).
+        shared: identified values of the unknowns, shape (n,).
 
     Raises:
         SceneError: the scene refuses a number.
@@ -47,11 +47,11 @@ def with_identified(scene: scenes.Scene, model: AnyModel, layout: UnknownLayout,
 
 
 def with_inputs(scene: scenes.Scene, values: Mapping[str, FloatArray]) -> scenes.Scene:
-    """A scene with other values for some of its inputs.
+    """Make a scene with other values of some of its inputs.
 
     Args:
         scene: the scene.
-        values: by name, in the shape in which a model unpacks them.
+        values: values by name, in the shape in which a model unpacks them.
     """
     tables = scene_tables(scene)
     for name, value in values.items():
@@ -60,7 +60,7 @@ def with_inputs(scene: scenes.Scene, values: Mapping[str, FloatArray]) -> scenes
 
 
 def _set_input(tables: dict[str, Any], name: str, value: FloatArray) -> None:
-    """Put an input where its table has it: a number, a vector, or coefficients for each component."""
+    """Set an input in its table: a number, a vector, or coefficients for each component."""
     rows = value.tolist()
     plain = [row[0] if len(row) == 1 else row for row in rows]
     if name.endswith("base.quaternion"):
@@ -74,7 +74,7 @@ def _set_input(tables: dict[str, Any], name: str, value: FloatArray) -> None:
 
 
 def beside(scene: scenes.Scene, folder: Path) -> scenes.Scene:
-    """The scene with the files of its measurements named relative to a folder."""
+    """Make a scene whose files of measurements are named relative to a folder."""
     measurements = []
     for measurement in scene.measurements:
         file = Path(os.path.relpath(measurement.file, folder)).as_posix()

@@ -1,4 +1,4 @@
-"""The end of an identification: the identified numbers, how well they are known, and the misfit that remains."""
+"""Result of an identification: the identified numbers, their uncertainty, and the remaining misfit."""
 
 from __future__ import annotations
 
@@ -20,31 +20,31 @@ from cosserat_casadi.scene import Scene
 from cosserat_casadi.tubes.tube_functions import AnyModel
 
 OUTLIER = 4.0
-"""Residual, in standard deviations as the residuals have them, beyond which a number is told as an outlier."""
+"""Residual, in standard deviations of the residuals, above which a number is reported as an outlier."""
 
 EARLY = ("stalled", "max_iterations")
-"""Outcomes of searches that ended before the misfit was least."""
+"""Outcomes of searches that ended before the minimum of the misfit."""
 
 NORMAL_MEDIAN = 0.6744897501960817
-"""Median size of a normally distributed number, in standard deviations."""
+"""Median absolute value of a normally distributed number, in standard deviations."""
 
 
 @dataclass(frozen=True)
 class Row:
-    """One measured number beside the model's.
+    """One measured number, with that of the model.
 
     Attributes:
         where: its row in words.
-        measurement: number of its measurement.
-        entry: which number of the quantity it is.
-        case: number of its case.
-        measured: in SI units; of an orientation 0.
-        modelled: measured plus the difference.
+        measurement: index of its measurement.
+        entry: index of the number in the quantity.
+        case: index of its case.
+        measured: measured value, SI units; 0 for an orientation.
+        modelled: measured value plus the difference.
         residual: the difference in standard deviations.
-        weight: what the loss leaves of it, 1 for all.
+        weight: weight of the residual in the loss, 1 for full weight.
         held_out: whether it was predicted and not fitted.
-        time: at which it was measured in its motion, s; None in an equilibrium.
-        at: abscissa X, or number of the mode, that its row gives; None without one.
+        time: time of the measurement in its motion, s; None in an equilibrium.
+        at: abscissa X, or number of the mode, of its row; None without one.
     """
 
     where: str
@@ -62,15 +62,15 @@ class Row:
 
 @dataclass(frozen=True)
 class MarkerDistances:
-    """How far the model is from one marker, over all rows in which all of its coordinates were measured.
+    """Distances of the model from one marker, over all rows in which all of its coordinates were measured.
 
     Attributes:
-        measurement: number of its measurement.
-        at: abscissa X of its section; None of a marker on a body.
+        measurement: index of its measurement.
+        at: abscissa X of its section; None for a marker on a body.
         rows: number of rows, without the held-out ones.
         rms: root mean square of the distances, m.
-        largest: of the distances, m.
-        mean: mean of model less measurement, world axes, shape (3,), m: what an offset of the marker would mend.
+        largest: largest distance, m.
+        mean: mean of model less measurement, world axes, shape (3,), m, which an offset of the marker could explain.
     """
 
     measurement: int
@@ -87,7 +87,7 @@ class LeftOut:
 
     Attributes:
         where: its first row in words.
-        reason: why.
+        reason: reason, as a sentence.
     """
 
     where: str
@@ -96,35 +96,35 @@ class LeftOut:
 
 @dataclass(frozen=True, repr=False)
 class Identification(Result):
-    """The end of an identification.
+    """Result of an identification.
 
     Attributes:
         model: the fitted model, with its parameters.
         layout: the unknowns.
-        shared: numbers found that all cases share, shape (n,), in the order of ``layout.shared_labels``.
-        own: numbers found for each case, shape (cases, k).
-        statistics: how well the shared unknowns are known.
-        converged: whether they are the least misfit and determined by data and priors.
-        outcome: how it ended, in a word.
-        message: in sentences.
-        iterations: steps of the search.
-        cost: half the sum of squares, in squared standard deviations, priors among them.
-        rows: every measured number beside the model's.
-        cases: their first rows in words.
-        unknowns_x: unknowns of the model in each case, of motions at their start, shape (cases, size). Cases
-            in exact contact have models that differ: see equilibria.
-        inputs: stacked inputs of each case, of motions at their start, shape (cases, size of the inputs).
+        shared: identified numbers that all cases share, shape (n,), in the order of ``layout.shared_labels``.
+        own: identified numbers of each case, shape (cases, k).
+        statistics: statistics of the shared unknowns.
+        converged: whether the misfit is minimal, and data and priors determine the numbers.
+        outcome: outcome in a word.
+        message: outcome in sentences.
+        iterations: number of steps of the search.
+        cost: half the sum of squares, in squared standard deviations, including priors.
+        rows: every measured number with that of the model.
+        cases: first row of each case, in words.
+        unknowns_x: unknowns of the model in each case, for motions at their start, shape (cases, size). Cases
+            in exact contact have different models: see equilibria.
+        inputs: stacked inputs of each case, for motions at their start, shape (cases, size of the inputs).
         unstable: cases whose equilibrium is unstable.
         left_out: cases that took no part.
         at_bounds: names of the numbers that are at a bound.
-        warnings: sentences on what looks wrong.
-        starts: how many starts there were, and how many ended here.
-        step: step of the motions that were measured, s; None where nothing was measured over time.
-        step_error: largest error that these steps leave in a residual, in standard deviations; None without steps.
-        error_estimate: largest estimated error that modes and nodes leave in the equilibria that were measured, as of a
-            solution: distance over the length, angle in rad, 1 where it is not known; None without equilibria.
-        error_case: the case in which that error is largest; None without equilibria.
-        equilibria: equilibria of the cases with their contacts, where contact is exact.
+        warnings: warnings as sentences.
+        starts: number of starts, and number of starts that ended here.
+        step: step size of the measured motions, s; None if nothing was measured over time.
+        step_error: largest error of a residual by these steps, in standard deviations; None without steps.
+        error_estimate: largest estimated error of the measured equilibria by modes and nodes, as for a solution:
+            distance over the length, angle in rad, 1 if unknown; None without equilibria.
+        error_case: the case with the largest such error; None without equilibria.
+        equilibria: equilibria of the cases with their contacts, for exact contact.
     """
 
     model: AnyModel
@@ -154,7 +154,7 @@ class Identification(Result):
 
     @property
     def within_tolerance(self) -> bool | None:
-        """Whether the estimated error is within the scene's tolerance; None where no tolerance has a meaning."""
+        """Whether the estimated error is within the scene's tolerance; None if no tolerance has a meaning."""
         accuracy = self.model.scene.accuracy
         if self.error_estimate is None or not accuracy.binds:
             return None
@@ -162,7 +162,7 @@ class Identification(Result):
 
     @cached_property
     def parameters(self) -> dict[str, FloatArray]:
-        """Values of the parameters by name, as ``solve(…, parameters=…)`` takes them."""
+        """Values of the parameters by name, as arguments of ``solve(…, parameters=…)``."""
         values = self.layout.identified(self.shared, of_input=False)
         defaults = {entry.name: entry.shape for entry in self.model.parameters.entries}
         return {name: value.reshape(defaults[name], order="F") for name, value in values.items()}
@@ -174,17 +174,17 @@ class Identification(Result):
 
     @property
     def sigma(self) -> FloatArray:
-        """Standard deviations, shape (n,); NaN where not determined."""
+        """Standard deviations, shape (n,); NaN if undetermined."""
         return self.statistics.sigma
 
     @property
     def intervals(self) -> FloatArray:
-        """Intervals that hold the true values in 95 % of all experiments, shape (n, 2); NaN where not determined."""
+        """Intervals that contain the true values in 95 % of all experiments, shape (n, 2); NaN if undetermined."""
         half = self.statistics.quantile * self.sigma
         return np.column_stack([self.shared - half, self.shared + half])
 
     def rms(self, *, held_out: bool = False, measurement: int | None = None) -> float | None:
-        """Root mean square of the residuals in standard deviations; None where there are none."""
+        """Root mean square of the residuals, in standard deviations; None without residuals."""
         chosen = [
             row.residual for row in self.rows if row.held_out is held_out and measurement in (None, row.measurement)
         ]
@@ -192,7 +192,7 @@ class Identification(Result):
 
     @property
     def distances(self) -> tuple[MarkerDistances, ...]:
-        """How far the model is from each marker, in the order of the measurements and along the rods."""
+        """Distances of the model from each marker, in the order of the measurements and along the rods."""
         apart: dict[tuple[int, float | None], dict[tuple[int, str], dict[int, float]]] = {}
         for row in self.rows:
             record = self.model.scene.measurements[row.measurement]
@@ -213,9 +213,9 @@ class Identification(Result):
 
     @property
     def outliers(self) -> tuple[Row, ...]:
-        """Numbers that are far from the model, the farthest first.
+        """Outliers: numbers far from the model, the farthest first.
 
-        Where most residuals are larger than stated, they are measured by their median: what sticks out counts.
+        If most residuals exceed the stated deviations, they are compared with their median.
         """
         sizes = [abs(row.residual) for row in self.rows if not row.held_out]
         spread = max(1.0, float(np.median(sizes)) / NORMAL_MEDIAN) if sizes else 1.0
@@ -224,25 +224,25 @@ class Identification(Result):
 
     @property
     def ended_early(self) -> bool:
-        """Whether the search ended before the misfit was least: its numbers are better than the start's."""
+        """Whether the search ended before the minimum of the misfit, with numbers better than those of the start."""
         return self.outcome in EARLY
 
     def fitted_scene(self, scene: Scene | None = None, *, early: bool = False) -> Scene:
-        """The scene with its identified numbers; unknowns of single cases keep the scene's values.
+        """Make the scene with the identified numbers; unknowns of single cases keep the scene's values.
 
         Args:
             scene: the scene that was identified; by default the model's, with its inputs and parameters.
-            early: whether numbers of a search that ended early will do.
+            early: whether numbers of a search that ended early are accepted.
 
         Raises:
-            SceneError: nothing was found, or the scene refuses it.
+            SceneError: nothing was found, or the scene refuses a number.
         """
         if not self.converged and not (early and self.ended_early):
             raise SceneError(Problem("unknowns", "were not found", self.message))
         return with_identified(scene or self.model.scene, self.model, self.layout, self.shared)
 
     def value(self, name: str) -> float | npt.NDArray[np.float64]:
-        """The value found of an unknown that all cases share, by its name.
+        """Return the identified value of an unknown that all cases share, by its name.
 
         Raises:
             KeyError: there is no such unknown.

@@ -1,10 +1,10 @@
 """Cases from tables: the measurements of each equilibrium, or of each motion.
 
-A case is one equilibrium. Each row of one file is a case; measurements of the same file share them. Rows whose inputs
-are equal have one equilibrium and are one case, unless inputs are unknown anew in each row. A column ``case`` joins
-rows, of several files too. Rows with times belong to a motion: rows with equal inputs are one.
+A case is one equilibrium. Each row of a file is a case; measurements in one file share their cases. Rows with equal
+inputs are one case, unless each row has separate unknown inputs. A column ``case`` joins rows, also of several files.
+Rows with times belong to motions: rows with equal inputs are one motion.
 
-Text cells of a table become numbers where they are asked for, empty ones NaN.
+Text cells of a table are converted to numbers on demand; empty ones become NaN.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ from cosserat_casadi.scene.faults import listing
 from cosserat_casadi.scene.number_table import finite_number, length_faults, read_rows, repeated, shortened
 
 NOT_MEASURED = ("", "nan", "na", "none", "null")
-"""Cells, in small letters, that say that nothing was measured."""
+"""Cells, in lower case, that mean that nothing was measured."""
 
 Flags = npt.NDArray[np.bool_]
 
 Data = Mapping[str, Mapping[str, npt.ArrayLike]]
-"""Columns by measurement, by its name or its file."""
+"""Columns of each measurement, by its name or its file."""
 
 SAME_TIME = 1e-9
 """Distance of a time from the motion, over the duration, that is rounding of a column's scale and shift."""
@@ -44,9 +44,9 @@ class Datum:
 
     Attributes:
         where: the row in words.
-        at: abscissa of its section, or number of its mode; NaN where the quantity has neither.
-        values: in SI units, shape (entries,); NaN where not measured.
-        time: in the motion of its case, s; NaN where that is an equilibrium.
+        at: abscissa of its section, or number of its mode; NaN if the quantity has neither.
+        values: measured values, SI units, shape (entries,); NaN if not measured.
+        time: time in the motion of its case, s; NaN for an equilibrium.
     """
 
     where: str
@@ -63,8 +63,8 @@ class Case:
         where: its first row in words.
         inputs: stacked inputs, shape (size of the inputs,); unknown ones have the scene's values.
         moves: whether it is a motion.
-        data: rows by the number of their measurement.
-        held_out: whether a row says that the case is to be predicted and not fitted.
+        data: rows by the index of their measurement.
+        held_out: whether a row marks the case as predicted and not fitted.
     """
 
     where: str
@@ -76,17 +76,17 @@ class Case:
 
 @dataclass
 class _Row:
-    """A row of a measurement before it has its case.
+    """A row of a measurement that is not yet assigned to a case.
 
     Attributes:
-        measurement: its number.
+        measurement: index of the measurement.
         where: the row in words.
-        place: its table and its line there: what measurements of one file share.
+        place: its table and its line there, which measurements of one file share.
         label: its cell in the column that joins rows to cases; None without one.
         set_inputs: values by index in the stacked inputs.
-        datum: the measurement; None where the row only holds the conditions of others.
+        datum: the measurement; None if the row contains only the conditions of others.
         moves: whether it is a row of a motion.
-        held_out: whether it says that its case is held out.
+        held_out: whether it marks its case as held out.
     """
 
     measurement: int
@@ -100,15 +100,15 @@ class _Row:
 
 
 def read_cases(scene: scenes.Scene, layout: InputLayout, data: Data | None = None) -> list[Case]:
-    """The cases of a scene's measurements.
+    """Read the cases of a scene's measurements.
 
     Args:
         scene: with measurements and unknowns.
         layout: inputs of its model.
-        data: columns that stand for files, by the name or the file of a measurement.
+        data: columns that replace files, by the name or the file of a measurement.
 
     Raises:
-        SceneError: with every fault of the tables.
+        SceneError: the tables have faults; the error lists all of them.
     """
     tables, problems = _tables(scene, data)
     per_row = any(unknown.per_row for unknown in scene.unknowns)
@@ -124,7 +124,7 @@ def read_cases(scene: scenes.Scene, layout: InputLayout, data: Data | None = Non
 
 
 def _tables(scene: scenes.Scene, data: Data | None) -> tuple[dict[int, DataFile], list[Problem]]:
-    """The table of each measurement by its number, and the problems of other names and files."""
+    """Read the table of each measurement, by its index, and collect problems of unknown names and files."""
     given = dict(data or {})
     names = [name for measurement in scene.measurements for name in (measurement.title, measurement.file)]
     problems = [Problem(name, "is no measurement of this scene") for name in given if name not in names]
@@ -144,14 +144,14 @@ def _tables(scene: scenes.Scene, data: Data | None) -> tuple[dict[int, DataFile]
 
 @dataclass
 class _Reader:
-    """Reads the rows of one measurement.
+    """Reader of the rows of one measurement.
 
     Attributes:
-        number: of the measurement.
-        measurement: its record.
-        table: its rows.
+        number: index of the measurement.
+        measurement: record of the measurement.
+        table: table with its rows.
         layout: inputs of the model.
-        duration: time that is simulated, s.
+        duration: simulated time, s.
         problems: problems of its rows.
     """
 
@@ -163,7 +163,7 @@ class _Reader:
     problems: list[Problem] = field(default_factory=list)
 
     def rows(self) -> list[_Row]:
-        """The rows of the measurement; a row without a number still holds conditions of its case."""
+        """Read the rows of the measurement; a row without a number still contains conditions of its case."""
         measurement, table = self.measurement, self.table
         columns = [column for column in measurement.columns if column]
         columns += [entry.column for entry in measurement.set_inputs.values() if entry.column is not None]
@@ -203,16 +203,16 @@ class _Reader:
 
     @property
     def _place(self) -> str | float | None:
-        """The abscissa of the section or the number of the mode, or the column that has it; None without either."""
+        """Abscissa of the section or number of the mode, or the column that contains it; None without either."""
         return getattr(self.measurement, "at", getattr(self.measurement, "mode", None))
 
     @property
     def _time(self) -> scenes.InputColumn | None:
-        """Where the times of the rows are; None where each case is an equilibrium."""
+        """Column with the times of the rows; None if each case is an equilibrium."""
         return getattr(self.measurement, "time", None)
 
     def _check_labels(self, rows: Sequence[int]) -> None:
-        """Every row says which case it belongs to: rows with empty cells there have nothing in common."""
+        """Check that every row names its case, since rows with empty cells have nothing in common."""
         column = self.measurement.case
         if column is None:
             return
@@ -222,7 +222,7 @@ class _Reader:
                 self.problems.append(Problem(self.table.where(row), problem, "name the case"))
 
     def _values(self, rows: Sequence[int]) -> FloatArray:
-        """Cells of the quantity in SI units, shape (rows, entries); NaN where not measured."""
+        """Cells of the quantity in SI units, shape (rows, entries); NaN if not measured."""
         measurement = self.measurement
         count = len(measurement.columns)
         scale = np.broadcast_to(np.asarray(measurement.scale), count)
@@ -238,7 +238,7 @@ class _Reader:
         return values
 
     def _abscissae(self, rows: Sequence[int], measured: Flags) -> FloatArray:
-        """Abscissa of the section or number of the mode of each row; NaN where the quantity has neither."""
+        """Abscissa of the section or number of the mode of each row; NaN if the quantity has neither."""
         place = self._place
         if not isinstance(place, str):
             return np.full(len(rows), np.nan if place is None else place)
@@ -262,7 +262,7 @@ class _Reader:
         return values
 
     def _times(self, rows: Sequence[int], measured: Flags) -> FloatArray:
-        """Time of each row in its motion, s; NaN where its case is an equilibrium."""
+        """Time of each row in its motion, s; NaN if its case is an equilibrium."""
         time = self._time
         if time is None:
             return np.full(len(rows), np.nan)
@@ -286,7 +286,7 @@ class _Reader:
         return values
 
     def _inputs(self, rows: Sequence[int], measured: Flags) -> dict[int, FloatArray]:
-        """Inputs that columns set, each of shape (rows,), by index in the stacked inputs; of empty cells NaN."""
+        """Inputs set by columns, each of shape (rows,), by index in the stacked inputs; NaN for empty cells."""
         indices = column_indices(self.layout)
         values = {}
         for name, entry in self.measurement.set_inputs.items():
@@ -311,12 +311,12 @@ class _Reader:
 
 
 def _joined(rows: Sequence[_Row], layout: InputLayout, per_row: bool) -> list[Case]:
-    """Rows of one equilibrium as one case.
+    """Join the rows of each equilibrium or motion to one case.
 
     Args:
-        rows: of all measurements.
+        rows: rows of all measurements.
         layout: inputs of the model.
-        per_row: whether inputs are unknown anew in each row.
+        per_row: whether each row has separate unknown inputs.
 
     Raises:
         SceneError: rows of one case set an input to different values.
@@ -341,7 +341,7 @@ def _joined(rows: Sequence[_Row], layout: InputLayout, per_row: bool) -> list[Ca
 
 
 def _key(row: _Row, settled: Mapping[int, tuple[float, str]], layout: InputLayout, per_row: bool) -> Hashable:
-    """Key that the rows of one case have in common."""
+    """Key of all rows of one case."""
     if row.label is not None:
         return "case", row.label, row.moves
     if per_row and not row.moves:
@@ -355,13 +355,13 @@ def _key(row: _Row, settled: Mapping[int, tuple[float, str]], layout: InputLayou
 def _settled(
     rows: Sequence[_Row], keys: Sequence[Hashable], names: Mapping[int, str], problems: list[Problem]
 ) -> dict[Hashable, dict[int, tuple[float, str]]]:
-    """Value of each input that rows of one key set, and the row that did, by key and index.
+    """Value of each input set by rows of one key, and the row that set it, by key and index.
 
     Args:
         rows: some rows.
-        keys: of these.
-        names: of the stacked inputs, by index.
-        problems: where rows that contradict each other are added.
+        keys: keys of these rows.
+        names: names of the stacked inputs, by index.
+        problems: list to which contradictions between rows are added.
     """
     known: dict[Hashable, dict[int, tuple[float, str]]] = {}
     for row, key in zip(rows, keys, strict=True):
@@ -376,10 +376,10 @@ def _settled(
 
 @dataclass(frozen=True)
 class DataFile:
-    """Rows of named cells.
+    """A table: rows of named cells.
 
     Attributes:
-        source: the file, or what else the rows are from.
+        source: the file, or another origin of the rows.
         columns: the cells of each column, as text.
         lines: line of each row in the file.
     """
@@ -392,17 +392,17 @@ class DataFile:
         return len(self.lines)
 
     def where(self, row: int) -> str:
-        """A row as a message names it."""
+        """Name of a row in messages."""
         return f"{self.source}, line {self.lines[row]}"
 
     def missing(self, names: Sequence[str]) -> list[Problem]:
-        """A problem for each column that is not there."""
+        """Problems of missing columns."""
         remedy = listing(self.columns, "columns")
         absent = [name for name in dict.fromkeys(names) if name not in self.columns]
         return [Problem(self.source, f"has no column {name!r}", remedy) for name in absent]
 
     def numbers(self, name: str, rows: Sequence[int]) -> tuple[FloatArray, list[Problem]]:
-        """The numbers of a column in some rows, NaN where nothing was measured, and the problems of other cells."""
+        """Numbers of a column in some rows, NaN if nothing was measured, and the problems of other cells."""
         values = np.full(len(rows), np.nan)
         problems = []
         for i, row in enumerate(rows):
@@ -427,10 +427,10 @@ class DataFile:
 
 
 def read_table(path: Path) -> DataFile:
-    """The rows of a CSV file with a header.
+    """Read the rows of a CSV file with a header.
 
     Raises:
-        SceneError: the file cannot be read, holds no row, has a column twice, or rows of another length.
+        SceneError: the file cannot be read, has no row, has a column twice, or rows of unequal length.
     """
     header, rows = read_rows(path)
     problems = [Problem(str(path), f"has the column {column!r} twice") for column in repeated(header)]
@@ -442,14 +442,14 @@ def read_table(path: Path) -> DataFile:
 
 
 def table_of(name: str, columns: Mapping[str, npt.ArrayLike]) -> DataFile:
-    """Columns that are given in Python, as the rows of a file.
+    """Make a table of columns from Python.
 
     Args:
-        name: what to call them in messages.
-        columns: of one length, each of shape (rows,); NaN is not measured.
+        name: name of the table in messages.
+        columns: columns of one length, each of shape (rows,); NaN means not measured.
 
     Raises:
-        SceneError: they differ in length.
+        SceneError: the columns differ in length.
     """
     arrays = {key: np.atleast_1d(np.asarray(values)) for key, values in columns.items()}
     counts = {array.shape for array in arrays.values()}

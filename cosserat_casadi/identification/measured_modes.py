@@ -1,9 +1,9 @@
 """Measured frequencies and damping ratios of small vibrations about the equilibrium, with exact derivatives.
 
-A mode is λ with (λ² M + λ C + K) z = 0 = l (λ² M + λ C + K), and changes by dλ = −l (λ² dM + λ dC + dK) z where the
-vectors are scaled to l (2λ M + C) z = 1 (P. Lancaster, *Numerische Mathematik* 6 (1964) 377–387). Of r modes with one
-λ, such as the two bendings of a round rod, none has a derivative. Their mean has one: the trace, over r, of
-the r×r matrix of these numbers. All r measured modes are compared with this mean.
+A mode is λ with (λ² M + λ C + K) z = 0 = l (λ² M + λ C + K), and changes by dλ = −l (λ² dM + λ dC + dK) z for vectors
+scaled to l (2λ M + C) z = 1 (P. Lancaster, *Numerische Mathematik* 6 (1964) 377–387). A single one of r modes with
+equal λ, such as the two bending modes of a round rod, has no derivative. Their mean has one: the trace, over r, of the
+r×r matrix of these numbers. All r measured modes are compared with this mean.
 """
 
 from __future__ import annotations
@@ -29,21 +29,21 @@ from cosserat_casadi.motion.vibration_modes import small_motions
 from cosserat_casadi.scene.measurements import ModeMeasurement
 
 ONE_FREQUENCY = 1e-6
-"""Distance of two eigenvalues, relative to their size, at which they are one: rounding splits them by less."""
+"""Distance of two eigenvalues, over their size, up to which they count as equal; rounding splits them by less."""
 
 PARTED = 1e-6
-"""Distance of eigenvalues, relative to their size, that an unknown makes of one where it changes by its own size."""
+"""Separation of equal eigenvalues, over their size, by a change of an unknown by its size, above which it counts."""
 
 
 @dataclass(frozen=True)
 class ModeCluster:
-    """Modes that have one eigenvalue.
+    """Modes with equal eigenvalues.
 
     Attributes:
         value: λ, the mean of the eigenvalues of these modes, 1/s.
         first: index of the first of these modes among the oscillating modes, from 1 on.
-        right: vectors z of the modes in all unknowns, one a column, shape (size, r).
-        left: vectors l of the modes, one a row, with l (2λ M + C) z = 1, shape (r, size).
+        right: right eigenvectors z in all unknowns, as columns, shape (size, r).
+        left: left eigenvectors l, as rows, with l (2λ M + C) z = 1, shape (r, size).
     """
 
     value: complex
@@ -66,7 +66,7 @@ class Vibrations:
     """The modes of a model about equilibria, and their derivatives.
 
     Attributes:
-        model: with its parameters; of rods where vibrations were measured.
+        model: model with its parameters; of rods if vibrations were measured.
     """
 
     def __init__(self, model: Any) -> None:
@@ -76,7 +76,7 @@ class Vibrations:
     def clusters(
         self, x: FloatArray, inputs: FloatArray, p: FloatArray, numbers: Sequence[int]
     ) -> dict[int, ModeCluster]:
-        """The modes of some indices, each with all modes of its eigenvalue; modes that do not oscillate are left out.
+        """Find the modes of some indices, each with all modes of its eigenvalue; only oscillating modes are kept.
 
         Args:
             x: unknowns of an equilibrium, shape (size,).
@@ -85,7 +85,7 @@ class Vibrations:
             numbers: indices among the oscillating modes, from 1 on.
 
         Returns:
-            clusters by the numbers of their modes.
+            the clusters by the indices of their modes.
         """
         motions = small_motions(self.model, x, inputs, p=p if self.model.parameters.size else None)
         if not np.any(motions.free_mass):
@@ -102,7 +102,7 @@ class Vibrations:
         return found
 
     def derivatives(self, cluster: ModeCluster, x: FloatArray, inputs: FloatArray, p: FloatArray) -> ComplexArray:
-        """The matrices −l_i (λ² dM + λ dC + dK) z_j by x, inputs and p, stacked, shape (r, r, arguments), 1/s."""
+        """Matrices −l_i (λ² dM + λ dC + dK) z_j by x, inputs and p, stacked, shape (r, r, arguments), 1/s."""
         function = self._slope_function()
         given = [x, inputs, p] if self.model.parameters.size else [x, inputs]
         count = cluster.count
@@ -124,8 +124,8 @@ class Vibrations:
     def _slope_function(self) -> ca.Function:
         """(x, inputs, p, l, (z, λz, λ²z)) ↦ derivatives of l (λ² M + λ C + K) z by x, inputs and p.
 
-        Real and imaginary parts of l and of the motion stand side by side. The sum of matrices is the derivative of the
-        residual along the motion, so that no matrix is written.
+        Real and imaginary parts of l and of the motion are side by side. The sum of matrices is the derivative of the
+        residual along the motion, so that no matrix is formed.
         """
         if self._slope is not None:
             return self._slope
@@ -159,7 +159,7 @@ class Vibrations:
 
 
 def _cluster(motions: SmallMotions, swinging: ComplexArray, index: int) -> ModeCluster:
-    """The modes that have the eigenvalue of a given mode.
+    """Find the modes with the eigenvalue of a given mode.
 
     Args:
         motions: the equations.
@@ -200,12 +200,12 @@ def _pencil(stiffness: FloatArray, damping: FloatArray, mass: FloatArray, value:
 
 @dataclass(frozen=True)
 class JointModes:
-    """Modes of one frequency, of which the mean is compared.
+    """Modes of one frequency, whose mean is compared with the measurements.
 
     Attributes:
-        case: number of their case.
-        numbers: of the modes.
-        parted: which unknowns would part them, shape (n,).
+        case: index of their case.
+        numbers: indices of the modes.
+        parted: mask of the unknowns that would separate them, shape (n,).
     """
 
     case: int
@@ -219,9 +219,9 @@ class MeasuredModes:
     Attributes:
         record: the measurement.
         cases: the cases that have such rows, shape (count,).
-        data: these rows, in the order of the residuals, each with the number of its entry.
-        row_cases: the case of each.
-        places: positions of their cases among the cases that have rows, shape (rows,).
+        data: these rows, in the order of the residuals, each with the index of its entry.
+        row_cases: case of each row.
+        places: index of each row's case among the cases that have rows, shape (rows,).
         sigma: standard deviation of each entry.
     """
 
@@ -238,7 +238,7 @@ class MeasuredModes:
         self._numbers = [[int(datum.at) for datum in data] for _, data in rows]
 
     def residual(self, x: FloatArray, inputs: FloatArray, p: FloatArray) -> FloatArray:
-        """Differences in standard deviations, shape (rows,); NaN of modes that do not swing.
+        """Differences in standard deviations, shape (rows,); NaN for modes that do not oscillate.
 
         Args:
             x: unknowns of each case, shape (count, size).
@@ -254,7 +254,7 @@ class MeasuredModes:
     def derivatives(
         self, x: FloatArray, inputs: FloatArray, p: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Derivatives of the residual with x, inputs and p of its case, (rows, …) each."""
+        """Derivatives of the residual by x, inputs and p of its case, (rows, …) each."""
         rows = []
         for i, numbers in enumerate(self._numbers):
             found = self._vibrations.clusters(x[i], inputs[i], p, numbers)
@@ -274,14 +274,14 @@ class MeasuredModes:
     def joint_modes(
         self, x: FloatArray, inputs: FloatArray, p: FloatArray, by_unknowns: FloatArray, sizes: FloatArray
     ) -> list[JointModes]:
-        """Measured modes that have one frequency, case after case.
+        """Measured modes of equal frequency, case by case.
 
         Args:
             x: unknowns of each case, shape (count, size).
             inputs: theirs, shape (count, size of the inputs).
             p: parameters.
-            by_unknowns: derivatives of (x, inputs, p) of each case with the unknowns, shape (count, arguments, n).
-            sizes: of the unknowns, shape (n,).
+            by_unknowns: derivatives of (x, inputs, p) of each case by the unknowns, shape (count, arguments, n).
+            sizes: sizes of the unknowns, shape (n,).
         """
         joint = []
         for i, numbers in enumerate(self._numbers):
@@ -301,7 +301,7 @@ def check_vibrations(model: Model) -> None:
     """Refuse measured vibrations of rods without mass.
 
     Raises:
-        SceneError: a vibration is measured of a scene in which a rod has no mass.
+        SceneError: vibrations were measured, but a rod has no mass.
     """
     if any(isinstance(record, ModeMeasurement) for record in model.scene.measurements):
         refuse(immovable(model.at()))

@@ -1,6 +1,6 @@
 """Measured quantities as expressions of the model: the difference between model and measurement.
 
-A quantity is one class: it gives :meth:`MeasuredQuantity.difference`, or of a vibration its value over the eigenvalue.
+Each quantity is a class, which defines ``difference``, or for a vibration its value as a function of the eigenvalue.
 """
 
 from __future__ import annotations
@@ -45,10 +45,10 @@ RecordType = TypeVar("RecordType", bound=MeasurementRecord)
 
 @dataclass(frozen=True)
 class MeasurementSite:
-    """System, record and measurement that the expression of a quantity is written in.
+    """System, record and measurement in which the expression of a quantity is written.
 
     Attributes:
-        written: the equations in their symbols; None of tubes.
+        written: the equations in their symbols; None for tubes.
         record: the measurement.
         at: abscissae of the sections, 1×k.
         measured: the measurement, a column for each section, entries×k.
@@ -77,9 +77,9 @@ class MeasurementSite:
 
     @cached_property
     def poses(self) -> ca.MX:
-        """A symbol for position and unit quaternion at each section or of the body, 7×k: what a quantity is written in.
+        """Symbol for position and unit quaternion at each section or of the body, 7×k, in which a quantity is written.
 
-        :meth:`placed` gives its value and its derivative; a quantity is differentiated with the symbol.
+        :meth:`placed` returns its value and its derivative; a quantity is differentiated by the symbol.
         """
         return ca.MX.sym("poses", 7, self.sections)
 
@@ -108,7 +108,7 @@ class MeasurementSite:
 
 @dataclass(frozen=True)
 class TubeSite(MeasurementSite):
-    """Robot, record and measurement that the expression of a quantity of concentric tubes is written in.
+    """Robot, record and measurement in which the expression of a quantity of concentric tubes is written.
 
     Attributes:
         section: unknowns, inputs and abscissa ↦ position and quaternion.
@@ -129,7 +129,7 @@ class MeasuredQuantity(Kind, ABC, Generic[RecordType]):
 
     Attributes:
         coordinates: number of the first entries that are coordinates of a point of the world, m.
-        unmeasured: what stands for each entry that was not measured, and counts for nothing; zeros where left out.
+        unmeasured: placeholder of each entry that was not measured, which has no effect; zeros by default.
     """
 
     record: ClassVar[type[MeasurementRecord]]
@@ -143,11 +143,11 @@ class MeasuredQuantity(Kind, ABC, Generic[RecordType]):
         return []
 
     def number(self, entry: int, values: FloatArray) -> float:
-        """The measured number that a difference is counted from, of the entries of one row."""
+        """Measured number from which a difference is counted, among the entries of one row."""
         return float(values[entry])
 
     def blank(self, *shape: int) -> FloatArray:
-        """Entries that were not measured, shape (*shape, entries)."""
+        """Placeholders of entries that were not measured, shape (*shape, entries)."""
         values = np.zeros((*shape, len(self.record.entries)))
         if self.unmeasured:
             values[...] = self.unmeasured
@@ -159,7 +159,7 @@ QUANTITIES = MeasuredQuantity.kinds
 
 
 class StateQuantity(MeasuredQuantity[RecordType]):
-    """One measured quantity that follows from the unknowns of an equilibrium, or of an instant."""
+    """A measured quantity that depends on the unknowns of an equilibrium, or of an instant."""
 
     @abstractmethod
     def difference(self, site: MeasurementSite) -> Matrix:
@@ -201,7 +201,7 @@ class MarkerPose(StateQuantity[MeasuredPose]):
         return ca.horzcat(*differences)
 
     def faults(self, values: FloatArray) -> list[tuple[int, str, str]]:
-        """A quaternion is there with all its numbers, or not at all."""
+        """Check that a quaternion has all of its numbers, or none."""
         quaternions = values[:, 3:]
         given = np.isfinite(quaternions)
         norms = np.linalg.norm(np.where(given, quaternions, 0.0), axis=1)
@@ -214,7 +214,7 @@ class MarkerPose(StateQuantity[MeasuredPose]):
         return faults
 
     def number(self, entry: int, values: FloatArray) -> float:
-        """A coordinate; a rotation is counted from the measured orientation."""
+        """Measured coordinate; 0 for a rotation, which is counted from the measured orientation."""
         return float(values[entry]) if entry < self.coordinates else 0.0
 
 
@@ -262,7 +262,7 @@ class ClampWrench(StateQuantity[MeasuredBaseWrench]):
 @final
 @register
 class FibreStrain(StateQuantity[MeasuredStrain]):
-    """Stretch of a fibre |Γ + K × r| over its stretch in the unloaded rod, less one."""
+    """Strain of a fibre: its stretch |Γ + K × r| over the stretch in the unloaded rod, less one."""
 
     record = MeasuredStrain
 
@@ -285,21 +285,21 @@ class FibreStrain(StateQuantity[MeasuredStrain]):
 
 
 class VibrationQuantity(MeasuredQuantity[RecordType]):
-    """One measured quantity of a vibration: a function of its eigenvalue λ, 1/s."""
+    """A measured quantity of a vibration: a function of its eigenvalue λ, 1/s."""
 
     @abstractmethod
     def value(self, eigenvalue: complex) -> float:
-        """The quantity of an eigenvalue."""
+        """Value of the quantity for an eigenvalue."""
 
     @abstractmethod
     def slope(self, eigenvalue: complex, change: ComplexArray) -> FloatArray:
-        """Derivatives of the quantity where the eigenvalue has these."""
+        """Derivatives of the quantity for given derivatives of the eigenvalue."""
 
 
 @final
 @register
 class Frequency(VibrationQuantity[MeasuredFrequency]):
-    """|λ| / 2π."""
+    """Frequency |λ| / 2π."""
 
     record = MeasuredFrequency
 
@@ -308,14 +308,14 @@ class Frequency(VibrationQuantity[MeasuredFrequency]):
         return abs(eigenvalue) / (2 * np.pi)
 
     def slope(self, eigenvalue: complex, change: ComplexArray) -> FloatArray:
-        """Derivatives of the frequency where the eigenvalue has these."""
+        """Derivatives of the frequency for given derivatives of the eigenvalue."""
         return np.asarray(_slope_of_size(eigenvalue, change) / (2 * np.pi))
 
 
 @final
 @register
 class DampingRatio(VibrationQuantity[MeasuredDampingRatio]):
-    """−Re λ / |λ|."""
+    """Damping ratio −Re λ / |λ|."""
 
     record = MeasuredDampingRatio
 
@@ -324,14 +324,14 @@ class DampingRatio(VibrationQuantity[MeasuredDampingRatio]):
         return -eigenvalue.real / abs(eigenvalue)
 
     def slope(self, eigenvalue: complex, change: ComplexArray) -> FloatArray:
-        """Derivatives of the damping ratio where the eigenvalue has these."""
+        """Derivatives of the damping ratio for given derivatives of the eigenvalue."""
         size = abs(eigenvalue)
         of_size = _slope_of_size(eigenvalue, change)
         return np.asarray(-change.real / size + eigenvalue.real * of_size / size**2)
 
 
 def _slope_of_size(eigenvalue: complex, change: ComplexArray) -> FloatArray:
-    """Derivatives of |λ| where λ has these."""
+    """Derivatives of |λ| for given derivatives of λ."""
     return np.asarray((np.conj(eigenvalue) * change).real / abs(eigenvalue))
 
 
@@ -347,15 +347,15 @@ def _stretch(strain: Matrix, place: ca.MX) -> Matrix:
 
 
 def difference(model: AnyModel, record: Any, sections: int) -> ca.Function:
-    """Model minus measurement, and its derivatives.
+    """Make the function of model minus measurement, and its derivatives.
 
     Args:
-        model: with parameters.
-        record: the measurement as the scene of the model's equations has it, its unknown numbers expressions of p.
-        sections: number k of sections that are asked for at once.
+        model: model with parameters.
+        record: the measurement in the scene of the model's equations, with unknown numbers as expressions of p.
+        sections: number k of sections that are evaluated at once.
 
     Returns:
-        (x, inputs, p, at 1×k, measured entries×k) ↦ difference, section after section, (d k)×1, and its derivatives
+        (x, inputs, p, at 1×k, measured entries×k) ↦ difference, section by section, (d k)×1, and its derivatives
         with respect to x, inputs and p.
     """
     x = ca.MX.sym("x", model.size)

@@ -1,4 +1,4 @@
-"""Measured rows beside the model's numbers: the residuals of one measurement, and their derivatives."""
+"""Comparison of measured rows with the model: the residuals of one measurement, and their derivatives."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from cosserat_casadi.tubes.tube_functions import AnyModel
 
 
 class MeasuredRows:
-    """All rows of one measurement of what follows from unknowns and inputs at one place: an equilibrium, or an instant.
+    """All rows of one measurement that depends on unknowns and inputs at one place: an equilibrium, or an instant.
 
     Attributes:
         record: the measurement.
-        cases: the case of each place, shape (count,).
-        times: of each place in the motion of its case, s, shape (count,); NaN of equilibria.
-        data: these rows, in the order of the residuals, each with the number of its entry.
-        row_cases: the case of each.
-        places: the place of each, shape (rows,).
-        sigma: standard deviations of the entries of all sections of a place, one after the other.
+        cases: case of each place, shape (count,).
+        times: time of each place in the motion of its case, s, shape (count,); NaN for equilibria.
+        data: these rows, in the order of the residuals, each with the index of its entry.
+        row_cases: case of each row.
+        places: place of each row, shape (rows,).
+        sigma: standard deviations of the entries, section by section of a place.
     """
 
     def __init__(self, model: AnyModel, record: Any, rows: Sequence[tuple[int, list[Datum]]]) -> None:
@@ -50,7 +50,7 @@ class MeasuredRows:
 
     @cached_property
     def _functions(self) -> tuple[ca.Function, ca.Function]:
-        """The differences of all places, and these with their derivatives."""
+        """Function of the differences of all places, and function of these with their derivatives."""
         count, sections = self._at.shape
         function = difference(self._model, self.record, sections)
         arguments = function.mx_in()
@@ -63,7 +63,7 @@ class MeasuredRows:
         return [x.T, inputs.T, p, at, measured]
 
     def residual(self, x: FloatArray, inputs: FloatArray, p: FloatArray) -> FloatArray:
-        """Differences in standard deviations, those measured, place after place, shape (rows,).
+        """Measured differences in standard deviations, place by place, shape (rows,).
 
         Args:
             x: unknowns of each place, shape (count, size).
@@ -77,7 +77,7 @@ class MeasuredRows:
     def derivatives(
         self, x: FloatArray, inputs: FloatArray, p: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Derivatives of the residual with x, inputs and p of its place, (rows, …) each."""
+        """Derivatives of the residual by x, inputs and p of its place, (rows, …) each."""
         count = len(self.cases)
         _, *matrices = self._functions[1](*self._arguments(x, inputs, p))
         by_x, by_inputs, by_p = ((split(matrix, count) / self.sigma[:, None])[self._known] for matrix in matrices)
@@ -87,7 +87,7 @@ class MeasuredRows:
 def measured_numbers(
     record: Any, rows: Sequence[Sequence[Datum]], sections: int
 ) -> tuple[FloatArray, FloatArray, npt.NDArray[np.bool_]]:
-    """Data of one measurement as arrays.
+    """Convert the data of one measurement to arrays.
 
     Args:
         record: the measurement.
@@ -95,8 +95,8 @@ def measured_numbers(
         sections: most data of a place.
 
     Returns:
-        abscissae, shape (places, sections); numbers, (places, sections, entries); which of the differences were
-        measured, (places, sections, differences).
+        abscissae, shape (places, sections); numbers, (places, sections, entries); mask of the measured differences,
+        (places, sections, differences).
     """
     at = np.zeros((len(rows), sections))
     measured = QUANTITIES[record.quantity].blank(len(rows), sections)
@@ -112,7 +112,7 @@ def measured_numbers(
 
 
 def by_instant(rows: Sequence[tuple[int, list[Datum]]]) -> list[tuple[int, list[Datum]]]:
-    """Rows of cases as rows of instants: rows of one time, or of one equilibrium, stand together."""
+    """Group rows of cases by instant: rows of one time, or of one equilibrium, are together."""
     instants: dict[tuple[int, float | None], list[Datum]] = {}
     for case, data in rows:
         for datum in data:

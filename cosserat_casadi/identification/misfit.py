@@ -1,7 +1,7 @@
-"""Differences of model and measurements in all cases, with exact derivatives by the implicit function theorem.
+"""Differences between model and measurements in all cases, with exact derivatives by the implicit function theorem.
 
 Each case has its own equilibrium g(x, inputs, p) = 0, so that dx = −(∂g/∂x)⁻¹ (∂g/∂inputs d inputs + ∂g/∂p dp). A case
-that was measured over time begins there, or unloaded, and moves on by the steps of identification/case_motions.py.
+that was measured over time begins there, or unloaded, and is integrated as in identification/case_motions.py.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from cosserat_casadi.scene.measurements import ModeMeasurement
 from cosserat_casadi.tubes.tube_functions import AnyModel, TubeFunctions
 
 ROUNDING = 1e-10
-"""Share of the largest derivative, each times the size of its unknown, below which one is rounding."""
+"""Derivative, times the size of its unknown, over the largest one, below which it counts as rounding."""
 
 
 @dataclass
@@ -36,11 +36,11 @@ class MisfitState:
         shared: shared unknowns, shape (n,).
         own: unknowns of each case, shape (cases, k).
         point: the equilibria.
-        residual: differences in standard deviations, case after case, shape (m,); NaN of modes that do not swing, and
-            of motions that could not be computed.
-        runs: motions of the cases that were measured over time, by the number of the case; None where steps failed.
-        sensitivities: derivatives of the equilibria with the shared unknowns, then with the unknowns of the case, shape
-            (cases, size, n + k); None until they are asked for.
+        residual: differences in standard deviations, case by case, shape (m,); NaN for modes that do not oscillate,
+            and for motions that could not be computed.
+        runs: motions of the cases that were measured over time, by index of the case; None if steps failed.
+        sensitivities: derivatives of the equilibria by the shared unknowns, then by the unknowns of the case, shape
+            (cases, size, n + k); None until they are computed.
     """
 
     shared: FloatArray
@@ -55,14 +55,14 @@ class Misfit:
     """The least-squares problem of an identification.
 
     Attributes:
-        model: with the parameters that are unknown.
+        model: model with the unknown parameters.
         layout: the unknowns.
         cases: the measured cases.
-        equilibria: of the cases; of a motion the equilibrium where it starts.
-        moves: which cases are motions, shape (cases,).
-        motions: of these cases.
+        equilibria: equilibria of the cases; for a motion the equilibrium at its start.
+        moves: mask of the cases that are motions, shape (cases,).
+        motions: motions of these cases.
         measurements: rows by measurement.
-        offsets: where the residuals of each case begin, shape (cases + 1,).
+        offsets: first residual of each case, followed by their number, shape (cases + 1,).
     """
 
     def __init__(self, model: AnyModel, layout: UnknownLayout, cases: Sequence[Case], equilibria: Equilibria) -> None:
@@ -89,12 +89,12 @@ class Misfit:
         self.row_cases: Indices = row_cases[self.order]
 
     def first(self, point: Point, shared: FloatArray, own: FloatArray) -> MisfitState:
-        """The state at equilibria that are known."""
+        """Make the state at known equilibria."""
         runs = {case: self.motions.run(case, point.x[case], point.inputs[case], point.p) for case in self.motions.times}
         return MisfitState(shared, own, point, self._residual(point, runs), runs)
 
     def at(self, shared: FloatArray, own: FloatArray, near: MisfitState) -> MisfitState | None:
-        """The state at other unknowns; None where a case cannot be followed there."""
+        """Follow the state to other unknowns; None if a case cannot be followed there."""
         # Steps that Newton's method cannot follow are too long for the linear model that proposes them.
         point, reached = self.moved(shared, own, near, far=False)
         if not np.all(reached):
@@ -102,7 +102,7 @@ class Misfit:
         return self.first(point, shared, own)
 
     def moved(self, shared: FloatArray, own: FloatArray, near: MisfitState, *, far: bool = True) -> tuple[Point, Flags]:
-        """Equilibria at other unknowns, and which cases could be reached; far as in `Equilibria.tracked`."""
+        """Follow equilibria to other unknowns; also return which were reached; ``far`` as in `Equilibria.tracked`."""
         of_cases = self.layout.inputs(shared, own, self.measured_inputs)
         inputs = self.motions.start.of(of_cases, self.moves)
         p = self.layout.parameters(shared)
@@ -113,7 +113,7 @@ class Misfit:
         return self.equilibria.tracked(near.point, predicted, inputs, p, far=far)
 
     def jacobian(self, state: MisfitState) -> FloatArray:
-        """Derivatives of the residual with the shared unknowns, then with those of the row's case, shape (m, n + k)."""
+        """Derivatives of the residual by the shared unknowns, then by those of the row's case, shape (m, n + k)."""
         state.point = self.equilibria.at_point(state.point)
         p_by_all, inputs_by_all = self._given_by_all(state)
         state.sensitivities = self.equilibria.sensitivities(state.point, p_by_all, inputs_by_all)
@@ -121,13 +121,13 @@ class Misfit:
         return without_rounding(rates, np.concatenate([self.layout.scales(state.shared), self.layout.own_scales]))
 
     def _given_by_all(self, state: MisfitState) -> tuple[FloatArray, FloatArray]:
-        """Derivatives of parameters and inputs with all unknowns, as of :meth:`UnknownLayout.derivatives`."""
+        """Derivatives of parameters and inputs by all unknowns, as from :meth:`UnknownLayout.derivatives`."""
         return self.layout.derivatives(state.shared, state.own, state.point.inputs.shape[1])
 
     def _rates(
         self, state: MisfitState, x_by_all: FloatArray, inputs_by_all: FloatArray, p_by_all: FloatArray
     ) -> FloatArray:
-        """Derivatives of the residual with all unknowns that a row sees, from those of x, inputs and parameters."""
+        """Derivatives of the residual by the unknowns of each row, from derivatives of x, inputs and parameters."""
         moved = {
             case: self.motions.sensitivity(run, x_by_all[case], inputs_by_all[case], p_by_all)
             for case, run in state.runs.items()
@@ -148,28 +148,28 @@ class Misfit:
         return np.concatenate(columns)[self.order]
 
     def solutions(self, state: MisfitState) -> tuple[Solution, ...]:
-        """The equilibria of the cases, each with its contacts, where contact is exact; none where it is not."""
+        """The equilibria of the cases, each with its contacts, for exact contact; else empty."""
         return ()
 
     def marginal(self, state: MisfitState) -> list[str]:
-        """Sentences on contacts that the changes of the unknowns to one side alone meet."""
+        """Sentences on contacts that change for only one direction of a change of the unknowns."""
         return []
 
     def kinked(self, state: MisfitState, other: MisfitState) -> Flags:
-        """Cases whose derivatives jump between two states, as they do where contacts change, shape (cases,)."""
+        """Mask of the cases whose derivatives jump between two states, because contacts change, shape (cases,)."""
         return np.zeros(len(self.cases), dtype=bool)
 
     def at_kink(self, state: MisfitState, other: MisfitState) -> list[str]:
-        """Changes in these cases, in words."""
+        """Changes of contacts between two states, in words."""
         return []
 
     @property
     def barred(self) -> list[str]:
-        """Cases of which a step was refused, for it led through a smooth obstacle or a rod."""
+        """Cases with a refused step, which would have led through a smooth obstacle or a rod."""
         return [case.where for case, barred in zip(self.cases, self.equilibria.barred, strict=True) if barred]
 
     def unstable(self, state: MisfitState) -> list[str]:
-        """Cases whose equilibrium is unstable, where that has a meaning."""
+        """Cases whose equilibrium is unstable, if stability has a meaning."""
         flags = self.equilibria.unstable(state.point)
         return [case.where for case, is_unstable in zip(self.cases, flags, strict=True) if is_unstable]
 
@@ -189,7 +189,7 @@ class Misfit:
         return [(self.cases[i].where, sentence) for i, sentence in told if sentence]
 
     def beyond_limits(self, state: MisfitState) -> list[tuple[str, BeyondLimit]]:
-        """Cases that are beyond a limit, and which limit that is."""
+        """Cases that are beyond a limit, each with that limit."""
         if isinstance(self.model, TubeFunctions) or self.model.strain_margins is None:
             return []
         bound = self.model.at(state.point.p)
@@ -197,7 +197,7 @@ class Misfit:
         return [(case, limit) for case, limit in limits if limit is not None]
 
     def _states(self, state: MisfitState) -> Iterator[tuple[str, FloatArray, FloatArray]]:
-        """Each case with its equilibrium and, in motions, the states at all times that were measured."""
+        """Each case with its equilibrium or, for a motion, the states at all measured times."""
         for i, case in enumerate(self.cases):
             x = state.point.x[i : i + 1]
             inputs = state.point.inputs[i : i + 1]
@@ -208,7 +208,7 @@ class Misfit:
             yield case.where, x, inputs
 
     def joint_modes(self, state: MisfitState) -> list[JointModes]:
-        """Measured modes of one frequency, of which the mean is compared; the Jacobian has been asked for there."""
+        """Measured modes of one frequency, whose mean is compared; the Jacobian must have been computed before."""
         found = []
         assert state.sensitivities is not None, "follow from the Jacobian"
         p_by_all, inputs_by_all = self._given_by_all(state)
@@ -225,7 +225,7 @@ class Misfit:
         return rows.residual(*self._at_places(rows, state.point, state.runs))
 
     def _instants(self, rows: MeasuredRows | MeasuredModes) -> list[tuple[int, int, int]]:
-        """Places of rows of motions, each with its case and the number of its time there."""
+        """Places of rows of motions, each with its case and the index of its time there."""
         if isinstance(rows, MeasuredModes):
             return []
         found = []
@@ -237,7 +237,7 @@ class Misfit:
     def _at_places(
         self, rows: MeasuredRows | MeasuredModes, point: Point, runs: Mapping[int, Run | None]
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Unknowns and inputs where the rows were measured, and parameters; NaN of motions that were not computed."""
+        """Unknowns and inputs at the places of the rows, and parameters; NaN for motions that were not computed."""
         x = point.x[rows.cases]
         inputs = point.inputs[rows.cases]
         for place, case, instant in self._instants(rows):
@@ -252,12 +252,12 @@ class Misfit:
 
 
 def inputs_of(cases: Sequence[Case]) -> FloatArray:
-    """Inputs that columns set, and the scene's values of others, shape (cases, inputs)."""
+    """Inputs set by columns, and the scene's values of others, shape (cases, inputs)."""
     return np.array([case.inputs for case in cases]).reshape(len(cases), -1)
 
 
 def moving(cases: Sequence[Case]) -> Flags:
-    """Which cases are motions, shape (cases,)."""
+    """Mask of the cases that are motions, shape (cases,)."""
     return np.array([case.moves for case in cases], dtype=bool)
 
 
@@ -267,13 +267,13 @@ def _times(case: Case) -> FloatArray:
 
 
 def without_rounding(derivatives: FloatArray, sizes: FloatArray) -> FloatArray:
-    """Derivatives in which unknowns that no datum sees have columns of zeros.
+    """Set columns of unknowns on which no datum depends to zero.
 
-    What rounding leaves there would pass for a datum of theirs, and send them far away to meet it.
+    Rounding in such a column would act as a datum of that unknown, and drive it far away.
 
     Args:
-        derivatives: with the shared unknowns, then with those of the row's case, shape (m, n + k).
-        sizes: of these unknowns, shape (n + k,).
+        derivatives: derivatives by the shared unknowns, then by those of the row's case, shape (m, n + k).
+        sizes: sizes of these unknowns, shape (n + k,).
     """
     norms = np.linalg.norm(derivatives, axis=0) * sizes
     return np.where(norms > ROUNDING * norms.max(initial=0.0), derivatives, 0.0)

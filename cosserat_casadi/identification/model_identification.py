@@ -1,6 +1,6 @@
-"""Identification of a model's unknowns from its measurements, and the error that modes and nodes leave in it.
+"""Identification of a model's unknowns from its measurements, with the error by modes and nodes.
 
-Measurements are of equilibria, vibrations and motions; modes and nodes are chosen to serve these measurements.
+Equilibria, vibrations and motions may be measured; modes and nodes are chosen for these measurements.
 """
 
 from __future__ import annotations
@@ -48,19 +48,19 @@ from cosserat_casadi.tubes.tube_solve import (
 )
 
 SAMPLES = 4
-"""Cases that a discretisation is chosen on."""
+"""Number of cases for which a discretisation is chosen."""
 
 SHARE_OF_SIGMA = 0.1
-"""Error of the model, in standard deviations of the measurements, that is small enough."""
+"""Largest error of the model, in standard deviations of the measurements."""
 
 LOOSEST = 1e-3
-"""Tolerance of equilibria, as `accuracy.tolerance`, above which none is taken: a sigma may be a guess."""
+"""Largest tolerance of equilibria, as `accuracy.tolerance`, because a sigma may be a guess."""
 
 LEAST = 1e-6
 """Tolerance of a motion, over the length, below which none is asked for where the scene does not."""
 
 RECHOSEN = 2
-"""Times that a discretisation is chosen again at the identified numbers."""
+"""Most repeated choices of a discretisation, at the identified numbers."""
 
 
 def identify_model(
@@ -106,19 +106,19 @@ def identify(
 ) -> Identification:
     """Identify the unknowns of a scene, or of a model, from measurements.
 
-    A model keeps its modes and nodes, or its steps. For a scene they are chosen to meet its tolerance, on the cases
-    that lie farthest apart: at the scene's own numbers, and again at the identified numbers, which may bend the rods
-    otherwise. Where these ask for more modes or steps, the search is made on them. Where the scene writes no tolerance
-    and poses alone were measured, a tenth of the least of their deviations is enough.
+    A model keeps its modes and nodes, or its steps. For a scene they are chosen to meet its tolerance, for the cases
+    that are farthest apart: at the scene's own numbers, and again at the identified numbers, which may bend the rods
+    differently. If these need more modes or steps, the search is repeated on them. If the scene has no tolerance and
+    only poses were measured, the tolerance is a tenth of the least of their deviations.
 
     Args:
         subject: a scene with measurements and unknowns; or a model in which these are parameters and inputs:
             ``build(scene.with_unknowns())``.
-        data: columns by measurement, by its name or its file, that stand for the file.
-        hold_out: share of the cases that is not fitted but predicted; by default the scene's.
-        starts: number of places from which the search begins; by default the scene's.
-        report: called with the work under way.
-        progress: told the steps of the search.
+        data: columns by measurement, by its name or its file, which replace the file.
+        hold_out: share of the cases that is predicted and not fitted; by default the scene's.
+        starts: number of starts of the search; by default the scene's.
+        report: callback with the work under way.
+        progress: callback with the steps of the search.
 
     Raises:
         SceneError: a table is refused, the model lacks an unknown, or there are fewer data than unknowns.
@@ -156,7 +156,7 @@ def identify(
 
 
 def _with_identified_inputs(cases: Sequence[Case], found: Identification) -> list[Case]:
-    """The cases that took part, with the inputs that were found for them."""
+    """Cases that took part, with the inputs that were found for them."""
     by_name = {case.where: case for case in cases}
     added = StartInputs(found.model).added
     chosen = []
@@ -167,7 +167,7 @@ def _with_identified_inputs(cases: Sequence[Case], found: Identification) -> lis
 
 
 def check_measured(model: AnyModel) -> None:
-    """Refuse a scene in which nothing was measured, or what cannot be had of it.
+    """Refuse a scene without measurements, or with measurements that it cannot provide.
 
     Raises:
         SceneError: with all that is wrong.
@@ -187,7 +187,7 @@ def check_measured_in_contact(scene: scenes.Scene) -> None:
     """Refuse measurements of motions in exact contact: those over time, and of vibrations.
 
     Raises:
-        SceneError: with every such measurement.
+        SceneError: there are such measurements; the error lists all of them.
     """
     over_time = "was measured over time, and a motion that strikes an exact obstacle has no derivative at the blow"
     vibrating = "is of a vibration, whose derivatives are not known while exact contacts slide"
@@ -201,7 +201,7 @@ def check_measured_in_contact(scene: scenes.Scene) -> None:
 
 
 def _split(cases: Sequence[Case], share: float) -> tuple[list[Case], list[Case]]:
-    """Fitted cases, and held-out cases: the cases that rows name, and a share of the rest."""
+    """Split cases into fitted and held-out ones: the cases that rows mark, and a share of the rest."""
     if not 0.0 <= share < 1.0:
         raise SceneError(Problem("--hold-out", f"must be >= 0 and < 1, got {share:g}"))
     others = [i for i, case in enumerate(cases) if not case.held_out]
@@ -218,10 +218,10 @@ def _split(cases: Sequence[Case], share: float) -> tuple[list[Case], list[Case]]
 
 
 def _refuse_few_data(layout: UnknownLayout, cases: Sequence[Case], scene: scenes.Scene) -> None:
-    """Refuse fewer data than unknowns: whatever they are, they can be met.
+    """Refuse fewer data than unknowns, which any data would fit.
 
     Raises:
-        SceneError: there are fewer.
+        SceneError: there are fewer data than unknowns.
     """
     data = 0
     for case in cases:
@@ -239,12 +239,12 @@ def _refuse_few_data(layout: UnknownLayout, cases: Sequence[Case], scene: scenes
 
 
 def with_model_error(found: Identification, cases: Mapping[str, Case]) -> Identification:
-    """An identification with the largest error of the equilibria that were measured, and a warning where it is large.
+    """Add the largest error of the measured equilibria to an identification, with a warning if it is large.
 
-    Motions have the errors of their steps, and are left out here.
+    Motions have errors of their steps, and are left out here.
 
     Args:
-        found: at the end of a search.
+        found: result of a search.
         cases: the fitted cases, by their first rows in words.
     """
     errors = {}
@@ -270,7 +270,7 @@ def with_model_error(found: Identification, cases: Mapping[str, Case]) -> Identi
 
 
 def _error(model: AnyModel, inputs: FloatArray, x: FloatArray) -> float:
-    """The estimated error of an equilibrium that the tolerance binds; of tubes beside twice the steps."""
+    """Estimate the error of an equilibrium for comparison with the tolerance; for tubes by twice the steps."""
     if isinstance(model, TubeFunctions):
         solution = solution_at(model, inputs, x, found=True)
         beside = error_beside(solution, finer_than(solution))
@@ -281,7 +281,7 @@ def _error(model: AnyModel, inputs: FloatArray, x: FloatArray) -> float:
 
 
 def _error_in_contact(solution: Solution) -> float:
-    """The estimated error of an equilibrium in exact contact; UNKNOWN where the search for contacts finds none."""
+    """Estimate the error of an equilibrium in exact contact; UNKNOWN if the search for contacts fails."""
     if not solution.converged:
         return UNKNOWN
     judged = estimated_in_contact(solution)
@@ -305,12 +305,12 @@ def _warning(found: Identification) -> str:
 
 @dataclass(frozen=True)
 class FitDiscretisation:
-    """A scene on modes and nodes that were chosen, and warnings about them.
+    """A scene on chosen modes and nodes, with warnings about them.
 
     Attributes:
-        scene: with fixed modes and nodes, unless no case has an equilibrium to choose them on.
-        warnings: sentences.
-        steps: of a piece of concentric tubes; None of rods.
+        scene: scene with fixed modes and nodes, unless no case has an equilibrium for which to choose them.
+        warnings: warnings as sentences.
+        steps: steps of a piece of concentric tubes; None for rods.
     """
 
     scene: scenes.Scene
@@ -326,13 +326,13 @@ class FitDiscretisation:
 def with_discretisation(
     scene: scenes.Scene, draft: AnyModel, cases: Sequence[Case], report: Report
 ) -> FitDiscretisation:
-    """The scene on modes and nodes that serve those cases that lie farthest apart.
+    """Choose modes and nodes of the scene for the cases that are farthest apart.
 
     Args:
-        scene: with all that is unknown or set by columns free.
-        draft: a model of it.
+        scene: scene whose unknowns and inputs set by columns are free.
+        draft: a model of the scene.
         cases: the measured cases.
-        report: told the stage.
+        report: callback with the stage.
     """
     if scene.accuracy.fixed:
         return FitDiscretisation(scene)
@@ -375,10 +375,10 @@ def with_discretisation(
 
 
 def _tolerance(scene: scenes.Scene, cases: Sequence[Case]) -> float:
-    """The scene's tolerance; where nobody has written one, what the least deviation of the measured poses asks for.
+    """Tolerance of the scene; if it has none, the one that the least deviation of the measured poses needs.
 
-    What else was measured, such as a force or a frequency, has no deviation that a pose could be held against: the
-    default holds.
+    Deviations of other quantities, such as forces or frequencies, are not comparable with pose errors: the default is
+    used then.
     """
     default = scene.accuracy.tolerance
     if "tolerance" in scene.accuracy.model_fields_set:
@@ -398,12 +398,12 @@ def _tolerance(scene: scenes.Scene, cases: Sequence[Case]) -> float:
 
 
 def _after(task: str, report: Report) -> Report:
-    """A report of the stages of a task that is one stage of another."""
+    """Make a callback for the stages of a task that is one stage of another task."""
     return lambda stage: report(f"{task}: {stage}")
 
 
 def _for_equilibria(baked: scenes.Scene, draft: Model, inputs: FloatArray, report: Report) -> list[Discretisation]:
-    """Discretisations for rows of inputs, shape (cases, size): one, or none where no row has an equilibrium."""
+    """Choose a discretisation for rows of inputs, shape (cases, size): a list of one, empty without an equilibrium."""
     if not len(inputs):
         return []
     cases = [LoadCase(baked, draft.inputs.unpack(inputs[row])) for row in _far_apart(inputs, SAMPLES)]
@@ -424,7 +424,7 @@ def _vibrations(scene: scenes.Scene, case: Case) -> list[Datum]:
 
 
 def _moving_scene(scene: scenes.Scene, draft: Model, case: Case) -> scenes.Scene:
-    """The scene with the inputs of a case, and with a tolerance of its motion that serves the measurements."""
+    """Make the scene with the inputs of a case, and with a tolerance of its motion that suits the measurements."""
     given = draft.inputs.unpack(case.inputs)
     moved = {motion.input for motion in scene.motions if motion.is_table}
     changed = with_inputs(scene, {name: value for name, value in given.items() if name not in moved})
@@ -443,7 +443,7 @@ def _moving_scene(scene: scenes.Scene, draft: Model, case: Case) -> scenes.Scene
 
 
 def _far_apart(points: FloatArray, count: int) -> list[int]:
-    """Rows of points that lie far from each other, each column over its range; the first is farthest from zero."""
+    """Select rows of points that are far apart, relative to the range of columns; the first is farthest from zero."""
     width = np.ptp(points, axis=0)
     scaled = points / np.where(width > 0, width, np.inf)
     chosen = [int(np.argmax(np.linalg.norm(scaled, axis=1)))]

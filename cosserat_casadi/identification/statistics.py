@@ -1,7 +1,7 @@
-"""How well the data determine the unknowns: covariance, and the directions that they leave open.
+"""Uncertainty of the unknowns: covariance, and the directions that the data do not determine.
 
-Near the optimum the misfit is that of a linear model: the covariance of the estimate is the inverse of the information
-JᵀJ, where J is the Jacobian in standard deviations, with the rows of the priors. G. A. F. Seber, C. J. Wild, *Nonlinear
+Near the optimum the misfit is linear: the covariance of the estimate is the inverse of the information JᵀJ, where J is
+the Jacobian in standard deviations, including the rows of the priors. G. A. F. Seber, C. J. Wild, *Nonlinear
 Regression*, Wiley 1989, chapters 2 and 3. Unknowns of single cases are eliminated first, so that their uncertainty
 counts.
 """
@@ -20,13 +20,13 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arrow_least_squares import ArrowStep
 
 BLIND = 1e-10
-"""Share of the largest singular value below which a direction is one that the data do not see: rounding."""
+"""Singular value, over the largest one, below which it is rounding, and the data do not see the direction."""
 
 NORMAL_95 = 1.959963984540054
-"""Deviations of a normal distribution that hold 95 % of it, on both sides of the mean."""
+"""Deviations from the mean, to both sides, within which a normal distribution has 95 %."""
 
 SMALL_PART = 1e-3
-"""Part of an unknown in a direction that is not told."""
+"""Largest component of an unknown that is left out of the description of a direction."""
 
 
 class NoiseFrom(Enum):
@@ -42,8 +42,8 @@ class Direction:
     """A combination of unknowns that the data do not determine.
 
     Attributes:
-        parts: share of each unknown's own size in it, by name; the largest is positive.
-        deviation: standard deviation along it in the same units, by the data alone; None where they do not see it.
+        parts: components of the direction in sizes of the unknowns, by name; the largest is positive.
+        deviation: standard deviation along it, in these units, by the data alone; None if they do not see it.
     """
 
     parts: dict[str, float]
@@ -52,16 +52,16 @@ class Direction:
 
 @dataclass(frozen=True)
 class Statistics:
-    """How well the shared unknowns are known.
+    """Statistics of the shared unknowns.
 
     Attributes:
-        covariance: shape (n, n); rows of unknowns that are not determined are NaN, of unknowns held at a bound zero.
+        covariance: covariance, shape (n, n); NaN in rows of undetermined unknowns, zero for unknowns held at a bound.
         determined: whether data and priors determine each unknown, and no bound holds it, shape (n,).
         unseen: directions that the data alone do not determine.
         settled: whether data and priors together determine every direction.
-        noise: factor on the standard deviations that were stated: 1, or what the residuals ask for.
-        quantile: deviations that hold 95 %.
-        own: standard deviations of the unknowns of each case, (cases, k); NaN where not determined.
+        noise: factor on the stated standard deviations: 1, or the one that follows from the residuals.
+        quantile: number of deviations for 95 %.
+        own: standard deviations of the unknowns of each case, shape (cases, k); NaN if undetermined.
     """
 
     covariance: FloatArray
@@ -74,12 +74,12 @@ class Statistics:
 
     @property
     def sigma(self) -> FloatArray:
-        """Standard deviations, shape (n,); NaN where not determined, zero for unknowns held at a bound."""
+        """Standard deviations, shape (n,); NaN if undetermined, zero for unknowns held at a bound."""
         return np.sqrt(np.where(self.determined, np.diagonal(self.covariance), np.nan))
 
     @property
     def correlation(self) -> FloatArray:
-        """Correlations, shape (n, n); NaN where there is no standard deviation."""
+        """Correlations, shape (n, n); NaN without a standard deviation."""
         return self.covariance / np.outer(self.sigma, self.sigma)
 
 
@@ -92,15 +92,15 @@ def statistics(
     squares: float,
     noise_from: NoiseFrom,
 ) -> Statistics:
-    """Statistics of the unknowns at the optimum.
+    """Compute the statistics of the unknowns at the optimum.
 
     Args:
         arrow: the misfit there, linear in the unknowns.
         labels: names of the shared unknowns.
-        scales: sizes that changes are compared with: of shared unknowns, shape (n,), and of a case's unknowns, (k,).
-        freedom: data more than unknowns.
-        squares: sum of the squares of the residuals, or what stands for it under a robust loss.
-        noise_from: what the noise of the data follows from.
+        scales: sizes for comparison: of shared unknowns, shape (n,), and of a case's unknowns, shape (k,).
+        freedom: number of data less number of unknowns.
+        squares: sum of the squares of the residuals, or its equivalent under a robust loss.
+        noise_from: source of the noise of the data.
     """
     n = arrow.shared
     shared_scales, own_scales = scales
@@ -135,8 +135,8 @@ class _Directions:
     """Singular directions of an information matrix.
 
     Attributes:
-        singular: one over the standard deviation along each, shape (n,), descending.
-        vectors: the directions, one a row.
+        singular: inverse standard deviation along each direction, shape (n,), descending.
+        vectors: the directions, as rows.
     """
 
     singular: FloatArray
@@ -144,16 +144,16 @@ class _Directions:
 
     @property
     def blind(self) -> npt.NDArray[np.bool_]:
-        """Which directions are not seen at all."""
+        """Mask of the directions that are not seen at all."""
         return np.asarray(self.singular <= BLIND * self.singular.max(initial=0.0))
 
     @property
     def open(self) -> npt.NDArray[np.bool_]:
-        """Which directions are not determined: the deviation is as large as the unknowns themselves."""
+        """Mask of the undetermined directions, whose deviation is as large as the unknowns themselves."""
         return self.blind | (self.singular < 1.0)
 
     def told(self, labels: list[str]) -> list[Direction]:
-        """The directions that are not determined, in words."""
+        """The undetermined directions, in words."""
         directions = []
         rows = zip(self.vectors, self.singular, self.blind, self.open, strict=True)
         for vector, singular, is_blind, is_open in rows:
@@ -169,7 +169,7 @@ class _Directions:
         return directions
 
     def covariance(self) -> FloatArray:
-        """Inverse of the information; NaN for unknowns that have a part in directions that are not seen."""
+        """Inverse of the information; NaN for unknowns with a component in unseen directions."""
         seen = ~self.blind
         scaled = self.vectors[seen] / self.singular[seen, None]
         covariance: FloatArray = scaled.T @ scaled
@@ -180,13 +180,13 @@ class _Directions:
 
 
 def _with_noise(covariance: FloatArray, prior: FloatArray, noise: float) -> FloatArray:
-    """Covariance where data, but not priors, deviate by a factor more than the fit has counted on.
+    """Covariance if data, but not priors, deviate by a larger factor than assumed in the fit.
 
     With the information A = D + P of data and priors, the covariance is A⁻¹ (noise² D + P) A⁻¹.
 
     Args:
-        covariance: A⁻¹, NaN for unknowns that are not seen, shape (n, n).
-        prior: weights of the priors, the root of P, shape (n, n).
+        covariance: A⁻¹, NaN for unseen unknowns, shape (n, n).
+        prior: weights of the priors, the square root of P, shape (n, n).
         noise: the factor.
     """
     # What a prior holds is seen: it has no part in what is NaN.
@@ -196,7 +196,7 @@ def _with_noise(covariance: FloatArray, prior: FloatArray, noise: float) -> Floa
 
 
 def _directions(rows: FloatArray) -> _Directions:
-    """Singular values and directions of the rows; as many as there are columns."""
+    """Singular values and directions of rows, as many as there are columns."""
     count = rows.shape[1]
     padded = np.vstack([rows, np.zeros((count, count))])
     _, singular, vectors = np.linalg.svd(padded, full_matrices=False)
@@ -206,7 +206,7 @@ def _directions(rows: FloatArray) -> _Directions:
 def _own_deviations(
     arrow: ArrowStep, eliminations: list[FloatArray], covariance: FloatArray, scales: FloatArray, noise: float
 ) -> FloatArray:
-    """Standard deviations of the unknowns of each case, with what the shared ones add; NaN where not determined."""
+    """Standard deviations of the unknowns of each case, including that by shared ones; NaN if undetermined."""
     n, k = arrow.shared, arrow.own
     deviations = np.full((len(eliminations), k), np.nan)
     for block, elimination in enumerate(eliminations):

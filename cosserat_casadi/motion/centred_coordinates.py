@@ -50,14 +50,14 @@ from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.tangent import Tangent
 
 SEEN_SIZE = 11
-"""Entries of what the base sees: centre of mass, 3, mean of the quaternions, 4, and quaternion of the middle, 4."""
+"""Numbers of the centred frame in the axes of the base: centre of mass, 3, mean quaternion, 4, middle quaternion, 4."""
 
 ORDERS = 3
-"""Positions, rates and accelerations."""
+"""Number of time derivatives that are transformed, counted from the zeroth: positions, rates and accelerations."""
 
 
 def can_be_centred(model: Model) -> bool:
-    """Whether a scene is one free rod without slack cables or exact friction, and of a length that is no input.
+    """Whether a scene consists of one free rod of fixed length, without cables that may go slack or exact friction.
 
     Tensions of cables are unknowns of the model, and a length that is an input would enter the frame with its rates.
     Steps with friction of exact contact are taken in the unknowns of the model.
@@ -69,13 +69,13 @@ def can_be_centred(model: Model) -> bool:
 
 
 class CentredCoordinates:
-    """The map x = φ(y): y is x but for the entries of the base, in whose place the centred frame's stand.
+    """The map x = φ(y): y is x, except that the pose of the centred frame replaces the pose of the base.
 
-    Forces of contacts, which stand behind the unknowns of the model while something touches, are equal in both.
+    While something touches, contact forces are appended to the unknowns of the model; φ leaves them as they are.
 
     Args:
-        model: of one rod that flies free, see :func:`can_be_centred`.
-        libraries: shared objects that have :attr:`in_iterations` and :attr:`derivatives`.
+        model: model of one rod that flies free, see :func:`can_be_centred`.
+        libraries: shared objects that contain :attr:`in_iterations` and :attr:`derivatives`.
     """
 
     def __init__(self, model: Model, libraries: Libraries = INTERPRETED) -> None:
@@ -98,11 +98,11 @@ class CentredCoordinates:
 
     @property
     def derivatives(self) -> ca.Function:
-        """(y, v, a) ↦ derivatives of the base's unknowns with y, 7×size, and their rates."""
+        """(y, v, a) ↦ derivative of the base's unknowns with respect to y, 7×size, and its first and second rate."""
         return self._functions.derivatives
 
     def to_model(self, instant: Instant) -> Instant:
-        """A state in the unknowns of the model, from one in these coordinates."""
+        """State in the unknowns of the model, from a state in these coordinates."""
         own = self._own(instant)
         base = self._base(own.x, own.v, own.a).reshape(ORDERS, POSE_SIZE)
         parts = [instant.x.copy(), instant.v.copy(), instant.a.copy()]
@@ -112,13 +112,13 @@ class CentredCoordinates:
         return Instant(instant.time, x, v, a)
 
     def positions_of_model(self, positions: FloatArray) -> FloatArray:
-        """Unknowns of the model at T times, from those in these coordinates, shape (T, size) each."""
+        """Unknowns of the model at T times, from positions in these coordinates, shape (T, size) each."""
         x = positions.copy()
         x[:, self._pose] = evaluated(self._position, positions)[0][:, :, 0]
         return x
 
     def from_model(self, instant: Instant) -> Instant:
-        """A state in these coordinates, from one in the unknowns of the model."""
+        """State in these coordinates, from a state in the unknowns of the model."""
         x, v, a = instant.x.copy(), instant.v.copy(), instant.a.copy()
         x[self._pose] = self._centred(x[: self._size])
         still = np.zeros_like(v)
@@ -191,20 +191,20 @@ class CentredCoordinates:
         return ca.Function("centred_dynamics", [*y, value, rate, acceleration], [ca.densify(rows)])
 
     def _with_base(self, own: ca.MX, base: ca.MX) -> ca.MX:
-        """Unknowns of the model, or their rates, from unknowns of the steps and of the base."""
+        """Unknowns of the model, or their rates, from the unknowns of the steps and those of the base, size×1."""
         order = np.arange(self._size)
         order[self._pose] = self._size + np.arange(POSE_SIZE)
         return ca.vertcat(own, base)[order.tolist()]
 
     def _own(self, instant: Instant) -> Instant:
-        """A state without the forces of contacts."""
+        """The state without the contact forces that are appended to it."""
         if len(instant.x) == self._size:
             return instant
         own = slice(0, self._size)
         return Instant(instant.time, instant.x[own], instant.v[own], instant.a[own])
 
     def _jet(self, instant: Instant) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Rows of the base in Φ, Φ̇ and Φ̈, shape (7, size) each."""
+        """The rows of Φ, Φ̇ and Φ̈ that belong to the base, shape (7, size) each."""
         own = self._own(instant)
         value, rate, acceleration = self._derivatives.matrices(own.x, own.v, own.a)
         return value, rate, acceleration
@@ -215,10 +215,10 @@ class CentredCoordinates:
 
 
 class _Functions:
-    """The functions of the coordinates of a model, over its size.
+    """CasADi functions of the centred coordinates of a model.
 
     Args:
-        model: of one rod that flies free.
+        model: model of one rod that flies free.
     """
 
     def __init__(self, model: Model) -> None:
@@ -238,7 +238,7 @@ class _Functions:
 
     @cached_property
     def base(self) -> ca.Function:
-        """(y, v, a) ↦ unknowns of the base, their rates and accelerations beneath each other, 21×1."""
+        """(y, v, a) ↦ unknowns of the base, their rates and their accelerations, stacked, 21×1."""
         orders = self._kernels.base(*self._states)
         return ca.Function("centred_base", self._symbols, [ca.densify(ca.vertcat(*orders))])
 
@@ -275,7 +275,7 @@ class _Functions:
 
 
 def _places(pose: slice, strains: slice, size: int) -> ca.DM:
-    """Rows of the pose, then of the strains, among all unknowns, sparse, (7 + n)×size."""
+    """Selection matrix of the pose, then of the strain coordinates, among all unknowns, sparse, (7 + n)×size."""
     columns = [*range(pose.start, pose.stop), *range(strains.start, strains.stop)]
     pattern = ca.Sparsity.triplet(len(columns), size, list(range(len(columns))), columns)
     return ca.DM(pattern, 1.0)
@@ -283,12 +283,12 @@ def _places(pose: slice, strains: slice, size: int) -> ca.DM:
 
 @dataclass(frozen=True)
 class FrameWeights:
-    """Weights of the nodes in a centred frame.
+    """Weights with which the nodes of a rod enter its centred frame.
 
     Attributes:
-        centre: of the tangents at the nodes in the centre of mass, shape (M,).
-        mean: of the quaternions at the nodes in their mean, shape (M,); their sum is one.
-        middle: the node next to the middle.
+        centre: weights of the tangents at the nodes in the centre of mass, shape (M,), m.
+        mean: weights of the quaternions at the nodes in their mean, shape (M,); their sum is one.
+        middle: index of the node next to the middle.
     """
 
     centre: FloatArray
@@ -297,7 +297,7 @@ class FrameWeights:
 
 
 def frame_weights(rod: DiscreteRod) -> FrameWeights:
-    """The weights of a rod's nodes."""
+    """Weights of the nodes of a rod in its centred frame."""
     X = known(rod.grid.nodes)
     lengths = known(rod.node_lengths)
     masses = section_masses(rod)
@@ -329,12 +329,12 @@ class SeenFromBase:
 
     @cached_property
     def motion(self) -> RodMotion:
-        """The rod as its base sees it."""
+        """Motion of the rod relative to its base."""
         return RodMotion(shape(self.rod, self.q, self.rod.properties.ratio), self.rates)
 
     @cached_property
     def values(self) -> tuple[Matrix, Matrix, Matrix]:
-        """Centre of mass, Q̄ and Q_m beneath each other, and their first and second rates, 11×1 each."""
+        """Centre of mass, Q̄ and Q_m, stacked, and their first and second rates, 11×1 each."""
         motion = self.motion
         centre = ca.DM(self.weights.centre)
         mean = ca.DM(self.weights.mean)
@@ -346,7 +346,7 @@ class SeenFromBase:
 
     @cached_property
     def variations(self) -> Jet:
-        """Derivatives of :attr:`values` with the strain coordinates, with rates, 11×n each."""
+        """Derivative of :attr:`values` with respect to the strain coordinates, with its rates, 11×n each."""
         turns = self._tangent.section_rotation
         tangents = self._tangent.section_tangent
         centre = ca.kron(ca.DM.eye(3), ca.DM(self.weights.centre).T)
@@ -373,20 +373,20 @@ class SeenFromBase:
 
     @cached_property
     def _tangent(self) -> MotionTangent:
-        """Variations of the rod's fields, without loads and without mass."""
+        """Variations of the fields of the rod without loads and mass."""
         massless = SectionMasses(np.zeros(self.rod.grid.size), {})
         unloaded = InverseGeometricModel(Statics(self.motion.shape, []))
         return MotionTangent(Tangent(unloaded, True), RodInertia(self.motion, massless), floating=False)
 
 
 def _spun(spins: Matrix, quaternions: Matrix) -> Matrix:
-    """½ ω Q of each column, 4×k."""
+    """Rate ½ ω Q of the quaternion in each column, 4×k."""
     real = ca.DM.zeros(1, spins.shape[1])
     return quaternion_product(ca.vertcat(real, spins / 2), quaternions)
 
 
 def _by_turns(quaternions: Matrix, weights: FloatArray) -> Matrix:
-    """Derivative of weighted quaternions with the stacked turns δθ of the nodes, 4×3M: δQ = ½ δθ Q."""
+    """Derivative of a weighted sum of quaternions with respect to the rotations δθ of its nodes: δQ = ½ δθ Q, 4×3M."""
     nodes = len(weights)
     halves = ca.DM(weights / 2.0).T
     blocks = []
@@ -399,7 +399,7 @@ def _by_turns(quaternions: Matrix, weights: FloatArray) -> Matrix:
 
 
 def _products(operators: list[Matrix], turns: Jet) -> tuple[Matrix, Matrix, Matrix]:
-    """The jet of a product: of operators that have rates with the variations of the turns."""
+    """Product of a matrix, given with its rates, and the jet of the turns: value, rate and acceleration."""
     value, rate, acceleration = operators
     return (
         value @ turns.value,
@@ -410,26 +410,26 @@ def _products(operators: list[Matrix], turns: Jet) -> tuple[Matrix, Matrix, Matr
 
 @dataclass(frozen=True)
 class BaseKernels:
-    """Functions from a centred frame, and what the base sees, to the unknowns of the base.
+    """Functions between the unknowns of the base and those of the centred frame.
 
-    The unknowns of both frames are (p − p₀)/ℓ and Q − Q₀ of the same start.
+    The unknowns of both frames are (p − p₀)/ℓ and Q − Q₀ with one start pose (p₀, Q₀).
 
     Attributes:
-        frame: the start and the length of the base.
+        frame: floating frame of the base: its start pose and its length ℓ.
     """
 
     frame: FloatingFrame
 
     @cached_property
     def base(self) -> ca.Function:
-        """(centred frame and its pose in the base, 18×1, their two rates) ↦ unknowns of the base and rates, 7×1."""
+        """(centred frame and its pose in the base, 18×1, two rates) ↦ unknowns of the base and two rates, 7×1 each."""
         state, rate, acceleration = self._symbols
         value, first, second = self._orders(self._base_of(state))
         return ca.Function("base", [state, rate, acceleration], ca.cse([value, first, second]))
 
     @cached_property
     def derivatives(self) -> ca.Function:
-        """Arguments of :attr:`base` ↦ the derivative of the base's unknowns with the state, 7×18, with its rates."""
+        """Arguments of :attr:`base` ↦ derivative of the base's unknowns by the 18 numbers, 7×18, and its two rates."""
         state, rate, acceleration = self._symbols
         jacobian = ca.densify(ca.jacobian(self._base_of(state), state))
         orders = [ca.reshape(order, 7, state.numel()) for order in self._orders(ca.vec(jacobian))]
@@ -468,7 +468,7 @@ class BaseKernels:
         return turn / ca.norm_2(turn)
 
     def _orders(self, value: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX]:
-        """A function of the state, and its first and second rate."""
+        """An expression of the state, with its first and second time derivative."""
         state, rate, acceleration = self._symbols
         first = ca.jtimes(value, state, rate)
         second = ca.jtimes(first, ca.vertcat(state, rate), ca.vertcat(rate, acceleration))

@@ -1,7 +1,7 @@
-"""How far a motion has come, as plain data: a later run goes on from it with the very digits of one motion.
+"""State of a simulation at its end, as plain data: a later run continues from it, digit for digit as one motion.
 
-Beside the motion itself the motions go on that tell its error: one with coarser steps, one on other modes. Each motion
-has its state, what touches or is taut, and what the next step takes over from the last.
+Beside the motion itself, the motions that tell its error go on: one with coarser steps, one on other modes. Each has
+its state, its contacts or taut cables, and the data that the next step takes over from the last.
 """
 
 from __future__ import annotations
@@ -33,12 +33,12 @@ KEY = "checkpoint"
 
 @dataclass(frozen=True)
 class CarriedContacts:
-    """Data that a step with friction of exact contact takes over from the steps before it, beside the state.
+    """Data, beside the state, that a step with friction of exact contact takes over from the steps before it.
 
     Attributes:
         memory: numbers of the memory in C, shape (c,).
-        touches: pair, whether it slides, place and gap of each contact that presses, shape (m, 4).
-        stuck: indices of the pairs with a contact, but no contact that slips.
+        touches: index of the pair, whether it slides, place, and gap of each contact that presses, shape (m, 4).
+        stuck: indices of the pairs that have contacts of which none slips.
     """
 
     memory: FloatArray
@@ -51,13 +51,13 @@ class Resume:
     """Where a motion goes on.
 
     Attributes:
-        at: the state in the coordinates of the steps, with forces of contacts behind them.
-        phases: which cables are taut and which joints at their stops, or what touches.
+        at: state in the coordinates of the steps, with the contact forces appended.
+        phases: the cables that are taut and the joints at their stops, or the contacts.
         places: abscissae to which the contacts were last followed.
-        guard: number of the guard that came to zero there; None where none did.
+        guard: number of the guard that came to zero there; None if no guard did.
         first: size of the next step, s.
-        memory: of the steps so far; None where the next one takes over nothing.
-        contacts: of the steps so far; None without friction of exact contact.
+        memory: data of the last step for the next one; None if the next one takes over nothing.
+        contacts: data of the contacts for the next step; None without friction of exact contact.
     """
 
     at: Instant
@@ -71,16 +71,16 @@ class Resume:
 
 @dataclass(frozen=True)
 class Strand:
-    """One motion of a simulation, as far as it has come.
+    """A motion of a simulation: the motion itself, or another one that tells its error.
 
     Attributes:
         discretisation: discretisation of every rod.
-        settings: how it steps.
-        gauss: whether by Gauss's method, and not by Radau IIA.
-        factor: error of the paths over their distance from this strand's paths; 0 of the motion itself.
-        impacts: energy that its impacts took more than impacts of the motion, J.
-        by_modes: whether it tells the error of the modes; else that of the steps.
-        resume: where it goes on.
+        settings: settings of the time steps.
+        gauss: whether the steps are of Gauss's method; else of Radau IIA.
+        factor: error of the motion's paths over their distance from the paths of this strand; 0 of the motion itself.
+        impacts: energy lost in impacts of this strand, less the energy lost in impacts of the motion, J.
+        by_modes: whether the strand tells the error of the modes; else it tells the error of the steps.
+        resume: state from which the strand goes on.
     """
 
     discretisation: dict[str, Discretisation]
@@ -102,10 +102,10 @@ class EnergyAccount:
     """Energies up to a time, J.
 
     Attributes:
-        stored: where the motion began.
-        dissipated: since then.
-        work: since then.
-        impacts: lost since then.
+        stored: energy stored at the start of the motion.
+        dissipated: energy dissipated since then.
+        work: work put in since then.
+        impacts: energy lost in impacts since then.
     """
 
     stored: float
@@ -116,14 +116,14 @@ class EnergyAccount:
 
 @dataclass(frozen=True)
 class Checkpoint:
-    """How far a simulation has come.
+    """State of a simulation at the time that it has reached.
 
     Attributes:
-        time: s.
+        time: time reached, s.
         strands: the motion, then the motions that tell its error.
-        error: estimated error of the paths so far, over the length; nan where none was made.
-        energy: up to the time.
-        tips: positions of the tips then, by rod, m: another scene has others.
+        error: estimated error of the paths so far, over the length; nan if it was not estimated.
+        energy: energies up to that time.
+        tips: positions of the tips at that time, by rod, m; they show whether a scene is the one of the checkpoint.
     """
 
     time: float
@@ -133,13 +133,13 @@ class Checkpoint:
     tips: dict[str, list[float]]
 
     def to_data(self) -> dict[str, Any]:
-        """The checkpoint as dictionaries, lists, arrays and numbers, field by field."""
+        """Return the checkpoint as dictionaries, lists, arrays and numbers, field by field."""
         data: dict[str, Any] = _data(self)
         return data
 
     @staticmethod
     def from_data(data: Mapping[str, Any]) -> Checkpoint:
-        """The checkpoint of such data.
+        """Return the checkpoint with the data of :meth:`to_data`.
 
         Raises:
             KeyError: an entry is missing.
@@ -154,10 +154,10 @@ class Checkpoint:
 
 
 def read_checkpoint(path: str | Path) -> Checkpoint | None:
-    """The checkpoint of a file of a motion, JSON or NPZ; None where the file is of something else.
+    """Read the checkpoint in the file of a motion, JSON or NPZ; None if the file does not hold a motion.
 
     Raises:
-        SceneError: the file is of a motion, and cannot be gone on from.
+        SceneError: the file holds a motion that cannot be continued.
     """
     file = Path(path)
     try:
@@ -176,13 +176,13 @@ def read_checkpoint(path: str | Path) -> Checkpoint | None:
 
 
 def of_another_scene() -> SceneError:
-    """The error of a motion that would go on where a motion of another scene ended."""
+    """The error of continuing a motion from the checkpoint of another scene."""
     problem = "the motion that it would go on from is of another scene"
     return SceneError(Problem(WHERE, problem, "give the scene of that motion"))
 
 
 def _data(value: Any) -> Any:
-    """A value as plain data: records as dictionaries, by the names of their fields."""
+    """Return a value as plain data: records become dictionaries by the names of their fields."""
     if is_dataclass(value):
         return {entry.name: _data(getattr(value, entry.name)) for entry in _written(type(value))}
     if isinstance(value, dict):
@@ -194,7 +194,7 @@ def _data(value: Any) -> Any:
 
 
 def _value(kind: Any, data: Any) -> Any:
-    """The value of a type with such data."""
+    """Return the value of a type from its plain data, the inverse of :func:`_data`."""
     origin, arguments = get_origin(kind), get_args(kind)
     if origin in (Union, UnionType):
         if data is None:
@@ -216,7 +216,7 @@ def _value(kind: Any, data: Any) -> Any:
 
 
 def _written(record: Any) -> list[Field[Any]]:
-    """Fields of a record that are written: a field with a factory is made of the written ones."""
+    """Fields of a record that are written; a field with a default factory is not, as the others determine it."""
     return [entry for entry in fields(record) if entry.default_factory is MISSING]
 
 

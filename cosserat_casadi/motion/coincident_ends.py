@@ -1,7 +1,7 @@
-"""Ends of rods that are one point: where a rod starts at the tip of another, or where tips are joined to one body.
+"""Ends of rods that coincide: a rod starts at the tip of another, or several tips are joined to one point of a body.
 
-Such a point touches once, not once for each rod. A place of contact that comes to it stays there where the rods make a
-corner, and goes on along the next rod where they do not.
+Such a point touches once, not once for each rod. A contact that slides to it stays there if the rods form a corner, and
+goes on along the next rod if they do not.
 """
 
 from __future__ import annotations
@@ -23,21 +23,21 @@ BASE = 0.0
 """Abscissa of the base of a rod."""
 
 TIP = 1.0
-"""Abscissa of its tip."""
+"""Abscissa of the tip of a rod."""
 
 SMOOTH = 1e-6
-"""Slope of a gap over arc length up to which the next rod goes on where the last one ends, without a corner."""
+"""Largest slope of a gap over arc length at which two rods that meet count as going on without a corner."""
 
 
 class RodEnd(NamedTuple):
-    """An end of a rod: its name, and the abscissa X, 0 or 1."""
+    """An end of a rod: the name of the rod, and the abscissa X, 0 or 1."""
 
     rod: str
     X: float
 
 
 def meetings(scene: scenes.Scene) -> list[set[RodEnd]]:
-    """Ends of rods that are at one point, an entry for each point."""
+    """Sets of coinciding ends of rods, one set for each point."""
     found: list[set[RodEnd]] = []
     for pair in _pairs(scene):
         joined = [one for one in found if one & pair]
@@ -47,7 +47,7 @@ def meetings(scene: scenes.Scene) -> list[set[RodEnd]]:
 
 
 def _pairs(scene: scenes.Scene) -> Iterator[set[RodEnd]]:
-    """Two ends at a time: tips and what starts at them, tips at one point of a body."""
+    """Pairs of coinciding ends: a tip and a base that starts at it, or two tips at one point of a body."""
     for rod in scene.rods:
         base = rod.base
         if base.rod is not None and base.at == TIP and not any(base.position):
@@ -62,11 +62,11 @@ def _pairs(scene: scenes.Scene) -> Iterator[set[RodEnd]]:
 
 
 def watched_ends(model: Model, rod: str, obstacle: scenes.ObstacleRecord) -> tuple[bool, bool]:
-    """Whether the base and the tip of a rod may be where it touches an obstacle.
+    """Whether the base and the tip of a rod are watched for contact with an obstacle.
 
-    A base that is held does not move, nor does an end beside an obstacle on the body that holds it. Of ends that meet
-    the thickest is watched for all; the base of a rod that starts between the ends of another is watched there, if that
-    one is as thick.
+    An end is not watched if it cannot move relative to the obstacle: a base fixed in the world, or an end fixed to the
+    body that carries the obstacle. Of coinciding ends only the thickest is watched. A base on a section of another rod
+    is not watched if that rod is as thick there: its section touches first.
     """
     watched = []
     for end in (RodEnd(rod, BASE), RodEnd(rod, TIP)):
@@ -80,13 +80,13 @@ def watched_ends(model: Model, rod: str, obstacle: scenes.ObstacleRecord) -> tup
 
 
 def _ordered(model: Model, ends: set[RodEnd]) -> list[RodEnd]:
-    """Ends by their radius, the thickest first, of equal ones in the order of the scene, tips before bases."""
+    """Sort ends by radius, thickest first; equal ones with tips before bases, then in the order of the scene."""
     order = [rod.name for rod in model.scene.rods]
     return sorted(ends, key=lambda end: (-_radius(model, end.rod, end.X), -end.X, order.index(end.rod)))
 
 
 def _on_a_carrier(model: Model, rod: str, obstacle: scenes.ObstacleRecord) -> bool:
-    """Whether the base of a rod is a section between the ends of another that touches in its place."""
+    """Whether the base of a rod is on an inner section of another rod, as thick there, which touches in its place."""
     base = model.discrete.records[rod].base
     if base.rod is None or base.at == TIP or any(base.position) or not obstacle.concerns(base.rod):
         return False
@@ -100,10 +100,10 @@ def _radius(model: Model, rod: str, X: float) -> float:
 
 
 class MeetingEnds:
-    """Which ends of what faces obstacles are one point.
+    """The coinciding ends among rods that may touch obstacles.
 
     Args:
-        facings: rods and bodies with the obstacles that they may touch.
+        facings: pairs of a rod or body and an obstacle that may touch.
     """
 
     def __init__(self, facings: Sequence[Facing]) -> None:
@@ -124,11 +124,11 @@ class MeetingEnds:
                 ]
 
     def beside(self, touch: MovingContact, near: float) -> list[tuple[int, float]]:
-        """Ends of other rods that a contact is next to, numbers of facings and abscissae.
+        """Ends of other rods next to a contact, as indices of facings and abscissae.
 
         Args:
             touch: the contact, at its place.
-            near: distance over the length from the common point up to which it is.
+            near: largest distance from the common point, over the length, that counts as next to it.
         """
         found = []
         for X in (BASE, TIP):
@@ -137,11 +137,11 @@ class MeetingEnds:
         return found
 
     def rise(self, touch: MovingContact, x: FloatArray, inputs: FloatArray) -> float:
-        """How fast, over arc length, the gap rises at an end that touches, along the rod where it does so least."""
+        """Least slope of the gap over arc length at an end that touches, among all rods that meet there."""
         return min(slope for slope, _ in self._rises(touch, x, inputs))
 
     def gone_on(self, touch: MovingContact, x: FloatArray, inputs: FloatArray) -> MovingContact:
-        """The contact that follows a contact which comes to an end of its rod, or leaves the end.
+        """The contact that replaces a contact which has slid to an end of its rod, or leaves that end.
 
         Args:
             touch: the contact, at its place.
@@ -160,12 +160,12 @@ class MeetingEnds:
         return MovingContact(number, X, True, height)
 
     def distinct(self, known: Touches, found: Touches, near: float) -> Touches:
-        """Known contacts, and found ones that are no others seen from the next rod.
+        """Known contacts and new ones, each common point of several rods once.
 
         Args:
             known: contacts that last.
-            found: others; of two that are one, that inside a rod is kept.
-            near: distance from the common point, over the length, up to which they are one.
+            found: new contacts; of two that coincide, the one inside a rod is kept.
+            near: distance from the common point, over the length, up to which contacts coincide.
         """
         kept = list(known)
         for touch in sorted(found, key=lambda one: not one.slides):
@@ -176,7 +176,7 @@ class MeetingEnds:
         return tuple(kept)
 
     def _rises(self, touch: MovingContact, x: FloatArray, inputs: FloatArray) -> list[tuple[float, tuple[int, float]]]:
-        """Slopes of the gaps away from an end, over arc length, along its own rod and then along all others there."""
+        """Slopes of the gaps over arc length away from an end, along its own rod, then along the others there."""
         own = (touch.facing, touch.place)
         found = []
         for number, X in [own, *self._others.get(own, [])]:

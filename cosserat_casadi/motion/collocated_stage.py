@@ -1,9 +1,9 @@
-"""One stage of an optimal-control problem in motion: a step of a collocation method as equations, not solved.
+"""One stage of an optimal-control problem in motion: the equations of a collocation step, which the optimiser solves.
 
 The optimiser holds the equations of motion at the instants at which the step collocates. Its variables are, of each
 stage, the state, and for each of these instants the accelerations and the algebraic entries. With them the next state
-is linear, by the same tables as in :mod:`cosserat_casadi.numerics.step`: what an optimiser finds is, to the tolerance
-of its equations, a motion of the simulator with steps of that size.
+is linear, by the same tables as in :mod:`cosserat_casadi.numerics.step`: a solution of the optimiser is, to the
+tolerance of its equations, a motion of the simulator with steps of that size.
 
 Time is measured in stages: with h the duration of a stage, velocities are h dx/dt and accelerations h² d²x/dt². All
 variables then are changes of x within a stage, and the tables have entries of order one.
@@ -33,7 +33,7 @@ MECHANICAL = (BlockKind.STRAIN, BlockKind.POSE, BlockKind.COORDINATE)
 """Unknowns whose rates are velocities of rods, bodies and joints."""
 
 DEPENDENT = 1e-9
-"""Share of the largest singular value of the constraints below which one repeats others."""
+"""Singular value of the constraints, over the largest one, below which a constraint counts as redundant."""
 
 
 @dataclass(frozen=True)
@@ -49,12 +49,12 @@ class Instants:
 class StageEquations:
     """The equations of motion at all instants of a stage.
 
-    Arguments beyond the third have their names in a call: a rate and the parameters in each other's place would pass
-    wherever they are of one size.
+    Arguments beyond the third are passed by name: rates and parameters of one size could otherwise be exchanged
+    unnoticed.
 
     Attributes:
-        function: (state, unknowns, inputs, inputs_rate), with parameters (state, unknowns, inputs, p, inputs_rate),
-            ↦ residual, without unit.
+        function: (state, unknowns, inputs, inputs_rate) ↦ dimensionless residual; with parameters
+            (state, unknowns, inputs, p, inputs_rate) ↦ dimensionless residual.
     """
 
     function: ca.Function
@@ -62,14 +62,14 @@ class StageEquations:
     def __call__(
         self, state: Matrix, unknowns: Matrix, inputs: Matrix, *, inputs_rate: Matrix, p: Matrix | None = None
     ) -> Matrix:
-        """Residual at all instants, shape (unknowns_size,), without unit; zero in a motion.
+        """Evaluate the dimensionless residual at all instants, shape (unknowns_size,); it is zero along a motion.
 
         Args:
             state: at the beginning of the stage, shape (state_size,).
-            unknowns: of the stage, shape (unknowns_size,).
-            inputs: stacked inputs at its beginning.
-            inputs_rate: their rates in it, units per second.
-            p: stacked parameters, of a stage that takes them.
+            unknowns: unknowns of the stage, shape (unknowns_size,).
+            inputs: stacked inputs at the beginning of the stage.
+            inputs_rate: rates of the inputs within the stage, units per second.
+            p: stacked parameters, if the stage takes them.
 
         Raises:
             ValueError: parameters are given to a stage that takes none, or are missing.
@@ -80,7 +80,7 @@ class StageEquations:
 
 
 def _asked_for(takes_parameters: bool, p: Matrix | FloatArray | None) -> list[Matrix | FloatArray]:
-    """The parameters as arguments of a function; none of a stage that takes none.
+    """Return the parameters as a list of arguments; the list is empty for a stage that takes none.
 
     Raises:
         ValueError: they are given to a stage that takes none, or are missing.
@@ -96,17 +96,17 @@ def _asked_for(takes_parameters: bool, p: Matrix | FloatArray | None) -> list[Ma
 class MotionStage:
     """A model over one stage.
 
-    Its *state* are the differential unknowns and their changes per stage, (x, h v), without unit. Its *unknowns* are,
-    for one instant after the other, a vector in the order of x: h² a of the differential entries, the values of
-    the algebraic ones; in exact contact behind them the forces of :attr:`pairs`. Inputs change linearly
-    within the stage. Where the model has parameters they are an argument p behind the inputs; in exact contact the
-    smoothing is its last entry.
+    Its *state* consists of the differential unknowns and their changes per stage, (x, h v), dimensionless. Its
+    *unknowns* are, for each instant in turn, a vector in the order of x: h² a for differential entries, the value
+    for algebraic ones; in exact contact the forces of :attr:`pairs` follow. Inputs change linearly within the
+    stage. If the model has parameters, they are an argument p after the inputs; in exact contact the smoothing is
+    the last entry of p.
 
     Attributes:
         model: the model.
         duration: h, s.
         method: the collocation method.
-        pairs: forces and gaps of sections and bodies that may touch exactly; None where none may.
+        pairs: forces and gaps of sections and bodies that may touch exactly; None without exact contact.
     """
 
     model: Model
@@ -116,7 +116,7 @@ class MotionStage:
 
     @property
     def differential(self) -> npt.NDArray[np.bool_]:
-        """Which entries of x have accelerations, shape (model.size,)."""
+        """Mask of the differential entries of x, which have accelerations, shape (model.size,)."""
         return self.model.discrete.unknowns.differential
 
     @property
@@ -131,7 +131,7 @@ class MotionStage:
 
     @property
     def dynamics(self) -> Model | TouchingPairs:
-        """The model, or its pairs, which have the equations of motion at an instant and their derivatives."""
+        """Provider of the equations of motion at an instant and their derivatives: :attr:`pairs`, or else the model."""
         return self.model if self.pairs is None else self.pairs
 
     @property
@@ -140,11 +140,11 @@ class MotionStage:
 
     @property
     def accelerated(self) -> npt.NDArray[np.bool_]:
-        """Which unknowns of an instant are accelerations, shape (unknowns_size / instants,)."""
+        """Mask of the unknowns of an instant that are accelerations, shape (unknowns_size / instants,)."""
         return np.pad(self.differential, (0, self._forces))
 
     def state(self, x: FloatArray, v: FloatArray | None = None) -> FloatArray:
-        """The state of a motion at one time, shape (state_size,).
+        """State of a motion at one time, shape (state_size,).
 
         Args:
             x: unknowns of the model, shape (model.size,).
@@ -154,10 +154,10 @@ class MotionStage:
         return np.concatenate([x[self.differential], self.duration * rates[self.differential]])
 
     def still(self, x: FloatArray) -> FloatArray:
-        """Unknowns of a stage in which nothing accelerates: to start from, shape (unknowns_size,).
+        """Unknowns of a stage without accelerations, as an initial guess, shape (unknowns_size,).
 
         Args:
-            x: unknowns of the model, of which the algebraic ones are taken, shape (model.size,).
+            x: unknowns of the model, from which the algebraic values are taken, shape (model.size,).
         """
         still = np.where(self.differential, 0.0, x)
         return np.tile(np.pad(still, (0, self._forces)), self.method.stages)
@@ -173,16 +173,16 @@ class MotionStage:
     def independent_rates(
         self, state: Matrix, x: FloatArray, inputs: FloatArray, p: FloatArray | None = None
     ) -> Matrix:
-        """Rates of what constraints leave free, 1/s: that they are zero says that the rods stand still.
+        """Rates in the directions that constraints leave free, 1/s; they are zero if and only if the rods stand still.
 
-        That all rates are zero would say of constraints once more what the equations of a stage say already, and
-        optimisers lose their way in what depends on itself. Flows of stress that relaxes are not among them.
+        To ask that all rates are zero would repeat the rates of constraints that the equations of a stage hold already,
+        and optimisers fail on redundant equations. Flows of stress that relaxes are not included.
 
         Args:
             state: shape (state_size,).
             x: unknowns near the state's, at which constraints are linearised, shape (model.size,).
             inputs: stacked inputs there.
-            p: stacked parameters there, of a stage that takes them.
+            p: stacked parameters there, if the stage takes them.
 
         Raises:
             ValueError: parameters are given to a stage that takes none, or are missing.
@@ -202,13 +202,13 @@ class MotionStage:
 
     @cached_property
     def transition(self) -> ca.DM:
-        """Matrix by which the next state depends on the state, sparse, shape (state_size, state_size)."""
+        """Derivative of the next state with respect to the state, sparse, shape (state_size, state_size)."""
         one = ca.DM.eye(self.state_size // 2)
         return ca.blockcat([[one, one], [ca.DM(*one.shape), one]])
 
     @cached_property
     def drive(self) -> ca.DM:
-        """Matrix by which the next state depends on the unknowns of the stage, sparse, (state_size, unknowns_size)."""
+        """Derivative of the next state with respect to the stage's unknowns, sparse, (state_size, unknowns_size)."""
         positions = [weight * self.places.T for weight in self.method.position_weights.tolist()]
         velocities = [weight * self.places.T for weight in self.method.weights.tolist()]
         matrix: ca.DM = ca.vertcat(ca.horzcat(*positions), ca.horzcat(*velocities))
@@ -216,7 +216,7 @@ class MotionStage:
 
     @cached_property
     def next_state(self) -> ca.Function:
-        """(state, unknowns) ↦ next state: linear."""
+        """The linear function (state, unknowns) ↦ next state."""
         state = ca.MX.sym("state", self.state_size)
         unknowns = ca.MX.sym("unknowns", self.unknowns_size)
         following = self.transition @ state + self.drive @ unknowns
@@ -228,10 +228,10 @@ class MotionStage:
         return StageEquations(self.equations_by(self.dynamics.inverse_dynamics, "equations"))
 
     def equations_by(self, inverse_dynamics: ca.Function, name: str) -> ca.Function:
-        """The function of :attr:`equations`, by a function that evaluates the equations of motion at an instant.
+        """The function of :attr:`equations`, composed of the equations of motion at each instant.
 
         Args:
-            inverse_dynamics: with the arguments and the result of inverse dynamics of :attr:`dynamics`.
+            inverse_dynamics: equations of motion at an instant, with the signature of those of :attr:`dynamics`.
             name: name of the function.
         """
         arguments = self.symbols
@@ -246,7 +246,7 @@ class MotionStage:
 
     @property
     def sizes(self) -> dict[str, int]:
-        """Entries of the arguments of the equations by name."""
+        """Number of entries of each argument of the equations, by name."""
         parameters = self.model.parameters.size + (self.pairs is not None)
         return {
             "state": self.state_size,
@@ -270,7 +270,7 @@ class MotionStage:
 
         Args:
             state: shape (state_size,).
-            unknowns: of the stage, shape (unknowns_size,).
+            unknowns: unknowns of the stage, shape (unknowns_size,).
         """
         half = self.state_size // 2
         start = self.places @ state[:half]
@@ -293,18 +293,18 @@ class MotionStage:
 
     @cached_property
     def places(self) -> ca.DM:
-        """Differential entries to their places in x of :attr:`dynamics`, sparse, state_size / 2 columns."""
+        """Matrix that scatters differential entries into x of :attr:`dynamics`, sparse, state_size / 2 columns."""
         places: ca.DM = ca.vertcat(differential_places(self.model), ca.DM(self._forces, self.state_size // 2))
         return places
 
 
 def differential_places(model: Model) -> ca.DM:
-    """Matrix that puts the differential entries of x to their places, sparse, shape (model.size, differential ones)."""
+    """Matrix that scatters the differential entries into x, sparse, shape (model.size, number of such entries)."""
     return _places(model.discrete.unknowns.differential)
 
 
 def algebraic_places(model: Model) -> ca.DM:
-    """Matrix that puts the algebraic entries of x to their places, sparse, shape (model.size, algebraic ones)."""
+    """Matrix that scatters the algebraic entries into x, sparse, shape (model.size, number of such entries)."""
     return _places(~model.discrete.unknowns.differential)
 
 

@@ -30,16 +30,16 @@ from cosserat_casadi.numerics.step_control import StepControl
 from cosserat_casadi.numerics.step_run import StepRun
 
 ORDERS = 3
-"""Arguments of inverse dynamics that are as many as its unknowns: x, v, a."""
+"""Number of arguments of inverse dynamics with as many entries as there are unknowns: x, v and a."""
 
 FACTS = 7
-"""Numbers of a step beside its state and its stages: the facts of :class:`StepRows`, and the size wanted next."""
+"""Numbers of a step beside its state and its stages: the facts of :class:`StepRows`, and the next step size."""
 
 MOST_TRIES = 64
-"""Steps that are tried in one call: then an interrupt is seen."""
+"""Most steps that one call tries; after each call an interrupt by the user is noticed."""
 
 FEW_TRIES = 32
-"""Steps that are tried in one call while a program may yet be written: then its cost is weighed again."""
+"""Most steps that one call tries while a program may yet be compiled; after each call its cost is weighed again."""
 
 OUTCOMES = (
     None,
@@ -49,16 +49,16 @@ OUTCOMES = (
     StepOutcome.SINGULAR,
     StepOutcome.INTERRUPTED,
 )
-"""Outcomes by the numbers that C returns; None where it would go on."""
+"""Outcomes by the number that C returns; None means that the motion goes on."""
 
 
 class CompiledSteps:
-    """The steps of one integration, taken by C; its run has them, and the memory for a next step.
+    """The steps of one integration, taken in C; the run stores the steps, and the data for the next one.
 
     Args:
-        run: the integration, whose steps are controlled and of Radau's method with three stages.
-        control: of the sizes of its steps.
-        shortest: step, s.
+        run: the integration, with controlled steps of Radau's method with three stages.
+        control: control of the step sizes.
+        shortest: shortest step, s.
 
     Raises:
         ExportError: there is no compiler, or it fails.
@@ -114,7 +114,7 @@ class CompiledSteps:
             record.linearised = 1
 
     def _share_kernel(self, residual: KernelResidual) -> None:
-        """Have C write the arguments of inverse dynamics in place, and call it, or CasADi's virtual machine."""
+        """Have C write the arguments of inverse dynamics in place, and call machine code or else CasADi."""
         record = self._record
         call = residual.call
         names = ("x", "v", "a", "input_values", "input_rates", "input_accelerations")
@@ -177,14 +177,14 @@ class CompiledSteps:
         self._without_program = None
 
     def _share_contacts(self, residual: PushedResidual) -> None:
-        """Have C take the forces of contacts from the equations."""
+        """Have C add the contact forces to the equations."""
         contacts = residual.in_law()
         self._held.point("contacts", contacts)
         self._record.touch_count = len(residual.follower.touches)
         self._record.push = address_of(compiled_law().push_in_steps)
 
     def _share_function(self) -> None:
-        """Have C call the equations as a function of Python."""
+        """Have C call the equations back as a Python function."""
         equations = self._run.equations
         n = equations.size
         x, v, a, result = np.zeros((4, n))
@@ -216,10 +216,10 @@ class CompiledSteps:
             held[:] = matrix.T
 
     def take(self, one: bool) -> tuple[StepOutcome | None, list[float]]:
-        """Take a step, or many, which the run then has as rows.
+        """Take one step, or many, and append them to the rows of the run.
 
         Returns:
-            how the motion ends, None where it goes on; and the time before each step that was tried, s.
+            the outcome of the motion, None if it goes on; and the start time of each step that was tried, s.
         """
         run, record, control = self._run, self._record, self._control
         n = run.equations.size
@@ -258,7 +258,7 @@ class CompiledSteps:
         return outcome, tried[: record.tries].tolist()
 
     def _taken(self, now: Instant, one: bool, facts: FloatArray, ends: FloatArray, unknowns: FloatArray) -> None:
-        """Give the run its new steps, and the memory for a next one."""
+        """Append the new steps to the run, and store the data for the next step."""
         run, record = self._run, self._record
         states = np.concatenate([[[now.x, now.v, now.a]], ends])
         facts = np.column_stack([np.append(now.time, facts[:-1, 0]), facts])
@@ -279,7 +279,7 @@ class CompiledSteps:
 
 
 def _evaluate(call: RepeatedCall, state: Sequence[FloatArray], rows: FloatArray, _: float) -> None:
-    """Have CasADi's virtual machine write the residual, of the unknowns of the model without unknowns of contacts."""
+    """Have CasADi's virtual machine write the residual of the model, without the unknowns of contacts."""
     for array, values in zip(call.arguments, state, strict=False):
         if array is not values:
             array[:] = values[: len(array)]

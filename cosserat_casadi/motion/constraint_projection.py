@@ -1,7 +1,7 @@
-"""Positions between the ends of steps put back on the constraints: supports, joints and cables are closed all along.
+"""Projection of positions between the ends of steps onto the constraints: supports, joints and cables stay closed.
 
-The polynomial of a step leaves the constraints by as much as it is inexact. The smallest displacement that closes them
-is far below the tolerance of the motion.
+The polynomial of a step violates the constraints by its own error. The smallest displacement that closes them is far
+below the tolerance of the motion.
 """
 
 from __future__ import annotations
@@ -24,23 +24,23 @@ from cosserat_casadi.motion.step_kernels import JACOBIANS, interpreted_derivativ
 from cosserat_casadi.numerics.consistent_start import regular_inverse
 
 CLOSED = 1e-12
-"""Largest row of a constraint, without unit, that counts as closed."""
+"""Largest dimensionless constraint residual that counts as closed."""
 
 MOST_CORRECTIONS = 12
-"""Most corrections of a state."""
+"""Largest number of corrections of a state."""
 
 INDEPENDENT = 1e-8
-"""Eigenvalue of the normal equations of constraints, over the largest, from which they are clearly independent."""
+"""Least eigenvalue of the normal equations, over the largest, at which constraints count as independent."""
 
 LINEARISED_AT_ONCE = 32
 """States whose derivatives are computed together: each has three matrices in memory."""
 
 CONTRACTED = 0.2
-"""Share of the gaps that a correction may leave before the next one has a new Jacobian."""
+"""Largest ratio of constraint residuals after and before a correction at which the Jacobian is kept."""
 
 
 GAPS = "motion_gaps"
-"""Name of the rows of the constraints in C."""
+"""Name of the function of constraint residuals in C."""
 
 
 @dataclass(frozen=True)
@@ -149,7 +149,7 @@ def constraint_rows(model: Model) -> npt.NDArray[np.int64]:
 
 
 def functions_of_closing(model: Model) -> list[ca.Function]:
-    """The function (x, inputs) ↦ the rows of the constraints; none where nothing is held."""
+    """The function (x, inputs) ↦ constraint residuals, as a list; it is empty for a scene without constraints."""
     rows = constraint_rows(model)
     if not len(rows):
         return []

@@ -1,4 +1,4 @@
-"""Scenes that exact contact in motion refuses, and the depth of rods inside smooth obstacles along a motion."""
+"""Checks of scenes with exact contact in motion, and of the depth of rods inside obstacles along a motion."""
 
 from __future__ import annotations
 
@@ -20,25 +20,25 @@ from cosserat_casadi.motion.tip_paths import watched_states
 from cosserat_casadi.scene.simulation import Simulation
 
 THINNEST = 1e-3
-"""Least half of the thickness of an obstacle and radius of a section together, over the length of the rod."""
+"""Least sum of half the thickness of an obstacle and the radius of a section, over the length of the rod."""
 
 
 MOST_ENDS = 400
-"""Ends of steps at which rods are looked at, at most: of more steps every second, third, …"""
+"""Most ends of steps at which rods are checked; with more steps every second, third, … is checked."""
 
 NOT_OF_RODS = "A motion of the discrete model was computed that rods cannot make."
-"""First sentence where a motion leads through an obstacle or a rod: more modes would not help."""
+"""First sentence of the warning that a motion leads through an obstacle or a rod; more modes would not help."""
 
 CLOSER = 17
-"""Times, both ends among them, at which a motion is looked at more closely where the way between two is barred."""
+"""Number of times, both ends included, at which a motion is checked again between two times with a barred way."""
 
 
 def untouchable(model: Model, simulation: Simulation | None) -> Iterator[Problem]:
-    """Problems of a scene with exact contact in motion: settings and members that are refused beside it.
+    """Problems of a scene with exact contact in motion: settings and parts of the scene that do not go with it.
 
     Args:
         model: the model.
-        simulation: the settings; None of steps in C.
+        simulation: the settings; None for exported steps in C.
     """
     if simulation is not None and simulation.integrator == "gauss":
         yield Problem("simulation.integrator", "'gauss' does not converge for exact contact", "use 'radau'")
@@ -56,7 +56,7 @@ def untouchable(model: Model, simulation: Simulation | None) -> Iterator[Problem
 
 
 def _unfit_pairs(model: Model) -> Iterator[Problem]:
-    """Rods that touch rods exactly and whose ends are one point with ends of others: that point would touch twice."""
+    """Problems of rods that touch rods exactly and whose ends coincide with others: that point would touch twice."""
     met = {end.rod for ends in meetings(model.scene) for end in ends}
     for contact, rods in named_pairs(model.scene):
         if contact.exact and met & set(rods):
@@ -66,7 +66,7 @@ def _unfit_pairs(model: Model) -> Iterator[Problem]:
 
 
 def _too_thin(model: Model) -> Iterator[Problem]:
-    """Balls and bars about which a rod, or a body, turns so sharply that steps would be without end."""
+    """Problems of balls and bars so thin that a rod or body would turn about them in ever shorter steps."""
     met = []
     for rod, obstacle in pairs(model.scene):
         properties = model.discrete.rods[rod].properties
@@ -93,7 +93,7 @@ def _too_thin(model: Model) -> Iterator[Problem]:
 
 
 def too_deep(history: History, duration: float) -> str:
-    """A sentence where a motion does not resolve its contact: rods are deeper inside obstacles than their width."""
+    """Warning that a motion does not resolve its contact, rods being deeper than the width; empty otherwise."""
     if history.model.contact_depth is None:
         return ""
     times, x, inputs = watched_states(history, duration)
@@ -108,15 +108,15 @@ def too_deep(history: History, duration: float) -> str:
 
 
 def told_passage(history: History, duration: float, model: Model | None = None) -> str:
-    """A sentence on rods that pass through smooth bars, balls or each other; else nothing.
+    """Warning of rods that pass through smooth bars, balls or each other; empty if none does.
 
-    The straight ways between times that are watched and ends of steps are looked at; where one is barred, ways between
-    closer times.
+    The straight ways of sections between watched times and ends of steps are checked; where an obstacle bars one, the
+    ways between closer times are.
 
     Args:
         history: the motion.
         duration: duration of the motion, s.
-        model: the model of the motion with its parameters bound, where it has parameters.
+        model: the model of the motion with its parameters bound, if it has parameters.
     """
     barriers = SmoothBarriers(model or history.model)
     if not barriers.any:
@@ -134,7 +134,7 @@ def told_passage(history: History, duration: float, model: Model | None = None) 
 
 
 def laid_down(history: History) -> list[str]:
-    """Sentences on rods that were laid down because their contacts changed over and over, one for each obstacle."""
+    """Warnings of rods that were laid down because their contacts changed over and over, one for each obstacle."""
     times: dict[tuple[str, str], list[float]] = {}
     for event in history.events:
         if event.kind == LAID_DOWN:
@@ -147,11 +147,11 @@ def laid_down(history: History) -> list[str]:
 
 
 def told_inside(history: History, duration: float, deepest: float) -> str:
-    """A sentence where a section or a body is inside an obstacle without a width, with time and place; else nothing.
+    """Warning of a section or a body inside an obstacle without a width, with time and place; empty otherwise.
 
     Args:
         history: the motion.
-        duration: of the motion, s.
+        duration: duration of the motion, s.
         deepest: depth over the length up to which a section touches.
     """
     if history.contacts is None:

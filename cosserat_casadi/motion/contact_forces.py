@@ -1,4 +1,4 @@
-"""Contacts in force during a stretch of a motion: their unknown forces in the equations of motion.
+"""Contacts during a stretch of a motion between two events: their unknown forces in the equations of motion.
 
 A contact is a body, or the stretch of a rod about the section where its gap to an obstacle is least. That least gap is
 a function of the unknowns; while the contact lasts it is zero, and a force along its gradient, unknown, keeps it so.
@@ -24,15 +24,15 @@ from cosserat_casadi.numerics.motion_equations import MotionEquations, Residual
 
 
 class MovingContact(NamedTuple):
-    """A contact.
+    """A contact of a rod or a body with an obstacle or a rod, during a stretch of a motion.
 
     Attributes:
         facing: index, in the list of pairs that may touch, of the pair of this rod and this obstacle.
         place: abscissa X of the section that touches, where the contact was last looked at.
-        slides: whether it is the section whose gap is least, wherever that is; else it is the same section all along,
-            or a body.
-        height: gap, over the length, that it keeps: a share of what counts as touching.
-        element: number of the element of the rod that it slides in; None for the element of its place.
+        slides: whether the contact follows the section whose gap is least; else it stays at one section, or is of a
+            body.
+        height: gap, over the length, that the contact keeps, below the largest gap that counts as touching.
+        element: number of the element in which the contact slides; None for the element of its place.
     """
 
     facing: int
@@ -47,12 +47,12 @@ Touches = tuple[MovingContact, ...]
 
 
 class Followed(NamedTuple):
-    """Where contacts are that were followed to a state.
+    """Places of contacts after they were followed to a state.
 
     Attributes:
         places: abscissae, one for each contact.
         gaps: gaps of the contacts there, over the length of their rods.
-        gone: whether a contact is elsewhere than where it was, see :meth:`Follower.gone`.
+        gone: whether a contact has jumped, see :meth:`Follower.gone`, one for each contact.
     """
 
     places: list[float]
@@ -61,17 +61,17 @@ class Followed(NamedTuple):
 
 
 class Follower:
-    """Follows the places of contacts along a motion: each is looked for next to its last place.
+    """Tracker of the places of contacts along a motion; it searches for each one next to its last place.
 
     Args:
         facings: rods and obstacles that may touch.
         touches: the contacts.
 
     Attributes:
-        facings: what touches, of each contact; nothing in a copy by pickle, which tells the places alone.
+        facings: pair of each contact; empty in a pickled copy, which holds the places alone.
         touches: the contacts.
-        places: where they were last followed to.
-        elements: numbers of the elements that they slide in; polynomials of these are followed a little beyond.
+        places: last abscissa of each contact.
+        elements: number of the element in which each slides; its polynomials are evaluated a little beyond its ends.
     """
 
     def __init__(self, facings: Sequence[Facing], touches: Touches) -> None:
@@ -89,7 +89,7 @@ class Follower:
 
     @cached_property
     def _in_law(self) -> Held:
-        """The contacts as the law in C has them."""
+        """The contacts as records of the contact law in C."""
         records = (TouchRecord * len(self.touches))()
         held = Held(records)
         for record, facing, touch, element in zip(records, self.facings, self.touches, self.elements, strict=True):
@@ -99,15 +99,15 @@ class Follower:
         return held
 
     def at_places(self) -> int:
-        """Address of the contacts as C reads them, which looks for them next to their places."""
+        """Return the address of the records of the contacts, in which C finds the places to search next to."""
         for record, place in zip(self._in_law.record, self.places, strict=True):
             record.place = place
         return self._in_law.address
 
     def follow(self, x: FloatArray, inputs: FloatArray) -> Followed:
-        """Places, gaps, and which are gone, at a state of the motion, next to which others are looked for from now on.
+        """Follow the contacts to a state of the motion; the next search starts from the places there.
 
-        One that is gone is still looked for where it was.
+        A contact that has jumped is still searched for where it was.
         """
         places, gaps = self.gaps(x, inputs)
         gone = self.gone(x, inputs, places)
@@ -118,14 +118,14 @@ class Follower:
         return Followed(places, gaps, gone)
 
     def gone(self, x: FloatArray, inputs: FloatArray, places: Sequence[float]) -> list[bool]:
-        """Which contacts have jumped: they are elsewhere, and where they were the gap has lost its bend.
+        """Tell which contacts have jumped: their place is far from the last one, where the gap is convex no longer.
 
-        One that slides fast may have come as far between two looks at it, with a bend all the way.
+        A contact that slides fast may move as far between two states, but the gap stays convex all the way.
 
         Args:
             x: unknowns, shape (n,).
             inputs: stacked inputs, shape (m,).
-            places: of the contacts there.
+            places: abscissae of the contacts at the state.
         """
         found = []
         for facing, element, old, new in zip(self.facings, self.elements, self.places, places, strict=True):
@@ -145,26 +145,26 @@ class Follower:
         return memory[:, 0].tolist(), gaps
 
     def gradients(self, x: FloatArray, inputs: FloatArray, gaps: Sequence[SectionGap]) -> FloatArray:
-        """Derivatives of the gaps of the contacts with the unknowns, shape (m, n)."""
+        """Gradients of the gaps of the contacts with respect to the unknowns, shape (m, n)."""
         own = [facing.gradient(x, inputs, gap) for facing, gap in zip(self.facings, gaps, strict=True)]
         return np.array(own).reshape(len(gaps), len(x))
 
     def pushes(self, gradients: FloatArray) -> FloatArray:
-        """Forces on the unknowns by unit forces of the contacts, shape (m, n), from the gradients of their gaps."""
+        """Generalised forces of unit contact forces in the balances, shape (m, n), from the gradients of the gaps."""
         if all(facing.points.shares is None for facing in self.facings):
             return gradients
         return np.array([facing.points.in_balances(own) for facing, own in zip(self.facings, gradients, strict=True)])
 
     def open_by(self, gaps: Sequence[SectionGap]) -> list[float]:
-        """Excess of gaps over the heights that the contacts keep, over the lengths."""
+        """Gaps minus the heights that the contacts keep, over the length, one for each contact."""
         return [gap.value - touch.height for gap, touch in zip(gaps, self.touches, strict=True)]
 
     def pushed(self, gaps: Sequence[SectionGap], forces: FloatArray) -> dict[MovingPoints, FloatArray]:
-        """Forces of all contacts on the points that they press, stacked point by point: one push for each rod or body.
+        """Forces of all contacts on the points of each rod or body, stacked point by point.
 
         Args:
-            gaps: of the contacts.
-            forces: their forces, shape (m,).
+            gaps: gaps of the contacts.
+            forces: forces of the contacts, shape (m,).
         """
         pushed: dict[MovingPoints, FloatArray] = {}
         for facing, gap, force in zip(self.facings, gaps, forces, strict=True):
@@ -172,13 +172,13 @@ class Follower:
         return pushed
 
     def rows(self, rows: FloatArray, x: FloatArray, inputs: FloatArray, forces: FloatArray) -> FloatArray:
-        """Equations of motion with forces of the contacts, and behind them by how much their gaps are open.
+        """Equations of motion with the contact forces, followed by the excess of each gap, shape (n + m,).
 
         Args:
-            rows: of the equations without, shape (n,).
+            rows: equations of motion without contact, shape (n,).
             x: unknowns, shape (n,).
             inputs: stacked inputs, shape (k,).
-            forces: of the contacts, shape (m,).
+            forces: forces of the contacts, shape (m,).
         """
         count, size = len(self.touches), len(rows)
         both = np.append(rows, np.zeros(count))
@@ -190,15 +190,15 @@ class Follower:
     def curvature(
         self, x: FloatArray, inputs: FloatArray, gaps: Sequence[SectionGap], forces: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Derivative of what forces do to the equations of motion, (n, n), and gradients of the gaps, (m, n).
+        """Derivative of the contact terms of the equations by the unknowns, (n, n), and gradients of the gaps, (m, n).
 
-        The derivative is a sum of forces times second derivatives of gaps, in units of the equations.
+        The derivative is the sum of forces times second derivatives of gaps, in units of the equations.
 
         Args:
             x: unknowns, shape (n,).
             inputs: stacked inputs, shape (k,).
-            gaps: of the contacts.
-            forces: their forces, shape (m,).
+            gaps: gaps of the contacts.
+            forces: forces of the contacts, shape (m,).
         """
         total = np.zeros((len(x), len(x)))
         gradients = np.zeros((len(gaps), len(x)))
@@ -215,7 +215,7 @@ class Follower:
         return total, gradients
 
     def rates(self, x: FloatArray, v: FloatArray, inputs: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
-        """Rates of the gaps, 1/s, and second derivatives without accelerations of the unknowns, shape (m,) each, 1/s².
+        """Rates of the gaps, 1/s, and their second rates at zero accelerations of the unknowns, 1/s², shape (m,) each.
 
         Args:
             x: unknowns, shape (n,).
@@ -232,11 +232,11 @@ class Follower:
 
 
 class BaseOfSteps(NamedTuple):
-    """The base of a rod that nothing holds, whose unknowns in steps are not the model's.
+    """The free base of a rod, which has other unknowns in the steps than in the model.
 
     Attributes:
         call: unknowns of the steps ↦ unknowns of the base in the model.
-        begin: the first of the base's unknowns in the model.
+        begin: index of the first unknown of the base in the model.
     """
 
     call: RepeatedCall
@@ -245,14 +245,14 @@ class BaseOfSteps(NamedTuple):
 
 @dataclass(frozen=True)
 class PushedResidual:
-    """Residual of equations of motion with forces of contacts, and their gaps behind it: (t, x, v, a) ↦ shape (n + m,).
+    """Residual of the equations of motion with contact forces, followed by the gaps: (t, x, v, a) ↦ shape (n + m,).
 
     Attributes:
         rows: residual of the equations of the model.
         size: number of its unknowns n.
         follower: the contacts.
         piece: piece of the inputs.
-        base: base whose unknowns in x are not the model's; None where all are the model's.
+        base: base whose unknowns in x are not those of the model; None if there is no such base.
     """
 
     rows: Residual
@@ -262,7 +262,7 @@ class PushedResidual:
     base: BaseOfSteps | None = None
 
     def __call__(self, t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
-        """The residual, and the gaps."""
+        """Evaluate the residual and the gaps."""
         own = slice(0, self.size)
         at = x[own]
         if self.base is not None:
@@ -273,7 +273,7 @@ class PushedResidual:
         return self.follower.rows(rows, at, self.piece.at(t).value, x[self.size :])
 
     def in_law(self) -> Held:
-        """The contacts as steps in C have them."""
+        """The contacts as the record that steps in C read."""
         record = StepContactsRecord(self.follower.at_places(), len(self.follower.touches), self.size)
         held = Held(record)
         held.keep(self.follower)
@@ -287,9 +287,9 @@ class PushedResidual:
 def with_touches(plain: MotionEquations, follower: Follower, piece: Piece) -> MotionEquations:
     """Equations of motion with the forces of contacts as further unknowns, and their gaps as further rows.
 
-    A force is in EI/ℓ² of its rod; of a body, of the stiffest and the longest rod that holds it. In whatever assembly
-    they are, gaps depend on the strains and on the base of their rod alone, or on the pose of their body: it does to
-    these balances, which are in units of the same energy, what its gap gains from these unknowns.
+    The unit of a force is EI/ℓ² of its rod; for a body, of the stiffest and the longest rod that holds it. In any
+    assembly, a gap depends on the strains and the base of its rod alone, or on the pose of its body. The force enters
+    the balances of these unknowns, which are scaled by one energy, with the gradient of the gap.
 
     Args:
         plain: equations of the model.
@@ -323,5 +323,5 @@ def with_touches(plain: MotionEquations, follower: Follower, piece: Piece) -> Mo
 
 
 def _bordered(matrix: FloatArray, count: int) -> FloatArray:
-    """A square matrix with rows and columns of zeros added."""
+    """Return a square matrix with ``count`` rows and columns of zeros appended."""
     return np.pad(matrix, (0, count))

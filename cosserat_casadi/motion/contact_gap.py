@@ -1,8 +1,8 @@
 """A rod or a body that an obstacle faces, and the gap between the two with its derivatives.
 
-A gap is the distance of a point that moves with the unknowns, less what the surface lies outside of it. The least gap
+A gap is the distance of a point, which moves with the unknowns, from the obstacle, less the radius there. The least gap
 over a stretch of a rod is a function of the unknowns alone: its gradient is the gradient of the gap at the place where
-it is least, and its second derivative is less by what that place slides (E. Polak, *Optimization*, Springer 1997,
+it is least, and its second derivative is reduced because that place slides (E. Polak, *Optimization*, Springer 1997,
 section 3.1).
 """
 
@@ -38,39 +38,39 @@ from cosserat_casadi.motion.contact_law import (
 from cosserat_casadi.motion.moving_points import MovingPoints
 
 FLATTEST = 1e-3
-"""Least second derivative of the gap with X, over the length, at a place that slides: it slides ever faster.
+"""Least second derivative of the gap by X, over the length, of a sliding contact; as it falls the place runs away.
 
-A rod that rolls loses nothing; one that is held at sections instead is a polygon, and each section strikes. From 2e-2
-on these blows took a twentieth of the energy of a rubber rod as it rolled onto its end, on 40 modes.
+A rolling rod loses no energy, but a rod held at fixed sections moves like a polygon, and each section strikes. With
+2e-2 these blows took a twentieth of the energy of a rubber rod that rolled onto its end, on 40 modes.
 """
 
 
 STRIDE = 0.25
-"""Longest way between two looks, over the radius of an obstacle and the rod: what passes deeper than 1/128 is seen."""
+"""Longest way between two checks, over the sum of the radii: a passage deeper than 1/128 of the sum is noticed."""
 
 NO_PASSAGE = 1e30
-"""Way, m, that nothing goes in a step: no obstacle is passed in it."""
+"""Way, m, longer than any in a step: for obstacles that nothing can pass through in a step."""
 
 
 class Rows(NamedTuple):
-    """Weights of the points for a section, and for its derivative with X, shape (M,) each."""
+    """Weights of the points in the position of a section, and in its derivative with respect to X, shape (M,) each."""
 
     value: FloatArray
     first: FloatArray
 
 
 class SectionGap:
-    """A gap at one section, over the length of the rod, and what its derivatives are made of.
+    """The gap at one section, over the length of the rod, with the geometry that determines its derivatives.
 
     Args:
-        memory: the gap as C has written it, shape (gap_size() / 2,).
-        points: number of the points of the rod or body.
+        memory: the gap as written by C, shape (gap_size() / 2,).
+        points: number of points of the rod or body.
 
     Attributes:
         value: the gap.
-        slope: its derivative with X.
-        bend: its second derivative with X.
-        other_place: abscissa of the section of another rod that is nearest; None beside an obstacle.
+        slope: first derivative of the gap with respect to X.
+        bend: second derivative of the gap with respect to X.
+        other_place: abscissa of the nearest section of the other rod; None for an obstacle.
     """
 
     other_place: float | None = None
@@ -95,22 +95,22 @@ class SectionGap:
 
     @property
     def curvature(self) -> FloatArray:
-        """Second derivative of the distance with the point, shape (3, 3), 1/m."""
+        """Second derivative of the distance with respect to the point, shape (3, 3), 1/m."""
         return self._memory[7:16].reshape(3, 3)
 
     @property
     def tangent(self) -> FloatArray:
-        """Derivative of the position with X, shape (3,), m."""
+        """Derivative of the position with respect to X, shape (3,), m."""
         return self._memory[16:GAP_COUNTS]
 
 
 class Minimum(NamedTuple):
-    """A section whose gap is the least about it.
+    """A section at which the gap has a local minimum.
 
     Attributes:
         place: abscissa X.
-        gap: over the length.
-        inside: whether it is no end of the rod.
+        gap: gap over the length.
+        inside: whether it is between the ends of the rod.
     """
 
     place: float
@@ -126,8 +126,8 @@ class Facing(ABC):
         model: the model, built for a motion.
         owner: name of the rod, or of the body.
         against: the obstacle, or the contact with the other rod.
-        points: of the rod, or of the body; behind those of a rod stand those of the other rod.
-        of_body: whether it is a body.
+        points: points of the rod or of the body; if a rod is touched, the points of that rod follow.
+        of_body: whether the owner is a body.
     """
 
     model: Model
@@ -138,7 +138,7 @@ class Facing(ABC):
 
     @property
     def obstacle(self) -> scenes.ObstacleRecord:
-        """The obstacle of a pair that is not of two rods."""
+        """The obstacle of a pair; not for a pair of two rods."""
         assert not isinstance(self.against, scenes.RodContact), "asked for of obstacles"
         return self.against
 
@@ -150,12 +150,12 @@ class Facing(ABC):
     @property
     @abstractmethod
     def length(self) -> float:
-        """Length that gaps are counted in, m."""
+        """Length by which gaps are divided, m."""
 
     @property
     @abstractmethod
     def radii(self) -> tuple[float, float]:
-        """Radius at base and tip of a rod, between which it is linear, or of a body twice, m."""
+        """Radii at base and tip of a rod, between which the radius is linear, or the radius of a body twice, m."""
 
     @cached_property
     def force_unit(self) -> float:
@@ -164,7 +164,7 @@ class Facing(ABC):
 
     @cached_property
     def energy_unit(self) -> float:
-        """Work of a unit of force along a unit of the gap, J."""
+        """Work of a unit force along a unit gap, J."""
         return self.force_unit * self.length
 
     def nodes(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
@@ -173,11 +173,11 @@ class Facing(ABC):
 
     @property
     def carrier(self) -> str | None:
-        """Name of the body that carries the obstacle; None where it stands still, and beside another rod."""
+        """Name of the body that carries the obstacle; None for an obstacle in the world and for another rod."""
         return None if isinstance(self.against, scenes.RodContact) else self.against.body
 
     def axes(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
-        """Rotation from the axes of the obstacle, which are those of its body, to the world's, shape (3, 3)."""
+        """Rotation from the axes of the obstacle, those of its body, to the axes of the world, shape (3, 3)."""
         if self.carrier is None:
             return np.eye(3)
         own = inputs[: self.model.inputs.size]
@@ -185,35 +185,35 @@ class Facing(ABC):
 
     @property
     def stride(self) -> float:
-        """Longest way between two looks for contact in steps of given length, m."""
+        """Longest way between two checks for contact in steps of given size, m."""
         return min(NO_PASSAGE, STRIDE * (float(self.obstacle.thickness) / 2.0 + min(self.radii)))
 
     @property
     @abstractmethod
     def ends(self) -> Sequence[float]:
-        """Abscissae between which the gap is smooth: ends of the elements, base to tip."""
+        """Abscissae between which the gap is smooth: ends of the elements, from base to tip."""
 
     @property
     @abstractmethod
     def laid_at(self) -> FloatArray:
-        """Abscissae of the sections at which it is held where it lies, base to tip, shape (k,); none of a body."""
+        """Abscissae of the sections that hold a rod while it lies, from base to tip, shape (k,); empty for a body."""
 
     @abstractmethod
     def describe(self, held: Held) -> None:
-        """Write into the record how the sections follow from the points."""
+        """Write into the record the interpolation that gives sections from points."""
 
     @property
     def surfaces(self) -> dict[str, ca.Function]:
-        """Functions of a point that tell where the obstacle is, by the names that records in C have for them."""
+        """Functions of a point that define the surface of the obstacle, by their names in the records of C."""
         return {"surface": surface_at_once(self.obstacle), "distance": distance_from(self.obstacle)}
 
     @cached_property
     def in_law(self) -> Held:
-        """The pair as the law in C without friction has it."""
+        """Record of the pair for the contact law in C without friction."""
         return self.record(self.points.in_law)
 
     def record(self, points: Held) -> Held:
-        """The record of the pair for C, without a function of friction; ``points`` is the record of its points."""
+        """Make the record of the pair for C, without its friction law; ``points`` is the record of its points."""
         record = FacingRecord(is_body=self.of_body, laid_count=len(self.laid_at), restitution=self.against.restitution)
         record.length, record.force_unit, record.stride = self.length, self.force_unit, self.stride
         record.radius_at_base, record.radius_at_tip = self.radii
@@ -229,13 +229,13 @@ class Facing(ABC):
         return held
 
     def gap(self, memory: FloatArray) -> SectionGap:
-        """A gap that C has written, shape (gap_size(),)."""
+        """Read a gap that C has written, shape (gap_size(),)."""
         return SectionGap(memory[: len(memory) // 2], self.points.count)
 
     def at(self, nodes: FloatArray, X: float, element: int | None = None) -> SectionGap:
-        """The gap at a section, by the polynomials of an element next to it; None for the element that it lies in.
+        """Gap at a section by the polynomials of an element, by default the one that contains the section.
 
-        It is looked at a little beyond the ends of the rod and of an element too.
+        The section may be a little beyond the ends of the rod and of the element.
         """
         memory = np.empty(gap_size())
         number = self.element(X) if element is None else element
@@ -243,15 +243,15 @@ class Facing(ABC):
         return self.gap(memory)
 
     def place(self, nodes: FloatArray, near: float, element: int) -> float:
-        """Abscissa next to another where the gap is least, by the polynomials of an element."""
+        """Abscissa of the minimum of the gap next to ``near``, by the polynomials of an element."""
         return float(called("gap_place", self.in_law.address, _address(nodes), near, element))
 
     def element(self, X: float) -> int:
-        """Number of the element of a section; of two that meet there the one beyond."""
+        """Number of the element that contains a section; where two elements meet, the one towards the tip."""
         return min(max(bisect_right(self.ends, X) - 1, 0), len(self.ends) - 2)
 
     def minima(self, nodes: FloatArray, below: float) -> list[Minimum]:
-        """Sections whose gaps are the least about them, and not above a bound over the length, base to tip."""
+        """Local minima of the gap that do not exceed a bound over the length, from base to tip."""
         # A section that is looked at has one valley at most.
         places, gaps = np.zeros((2, LOOKS * (len(self.ends) - 1) + 1))
         room = places.ctypes.data, gaps.ctypes.data
@@ -259,23 +259,23 @@ class Facing(ABC):
         return [_minimum(place, gap) for place, gap in zip(places[:count].tolist(), gaps[:count].tolist(), strict=True)]
 
     def laid_gaps(self, nodes: FloatArray) -> FloatArray:
-        """Gaps at the sections at which it is held where it lies, over the length, shape (k,)."""
+        """Gaps at the sections that hold a rod while it lies, over the length, shape (k,)."""
         gaps = np.zeros(len(self.laid_at))
         called("laid_gaps", self.in_law.address, _address(nodes), gaps.ctypes.data)
         return gaps
 
     def lowest(self, nodes: FloatArray, but: Sequence[float], ends: Sequence[float] = ()) -> float:
-        """The least gap over the length but for those in the valleys of some abscissae; infinite where there is none.
+        """Least gap over the length outside the valleys about some abscissae; infinite if nothing is outside of them.
 
         Args:
-            nodes: positions, shape (M, 3), m.
-            but: these abscissae.
-            ends: ends of the rod that are left out where they are lower than all beside them.
+            nodes: positions of the points, shape (M, 3), m.
+            but: abscissae whose valleys are left out.
+            ends: ends of the rod that are left out where the gap has a minimum there.
         """
         return self._lowest(nodes, but, ends, all_ends=False).gap
 
     def deepest(self, nodes: FloatArray) -> Minimum:
-        """The section whose gap is the least of all, sections that are held included."""
+        """The section with the least gap of all, held ends included."""
         return self._lowest(nodes, (), (), all_ends=True)
 
     def _lowest(self, nodes: FloatArray, but: Sequence[float], ends: Sequence[float], *, all_ends: bool) -> Minimum:
@@ -287,20 +287,20 @@ class Facing(ABC):
         return _minimum(place.value, gap.value)
 
     def gradient(self, x: FloatArray, inputs: FloatArray, gap: SectionGap) -> FloatArray:
-        """Derivative of a gap with the unknowns, shape (n,)."""
+        """Gradient of a gap with respect to the unknowns, shape (n,)."""
         return self.points.gradient(x, inputs, self.weights(gap))
 
     def by_inputs(self, x: FloatArray, inputs: FloatArray, gap: SectionGap) -> FloatArray:
-        """Derivative of a gap with the inputs, shape (m,)."""
+        """Gradient of a gap with respect to the inputs, shape (m,)."""
         return self.points.by_inputs(x, inputs, self.weights(gap))
 
     def turning(self, by_nodes: FloatArray, gap: SectionGap, *, slides: bool) -> FloatArray:
-        """Second derivative of a gap with the unknowns without the second derivative of the points, shape (n, n).
+        """Second derivative of a gap by the unknowns, less the part by second derivatives of the points, shape (n, n).
 
         Args:
-            by_nodes: derivative of the points with the unknowns, shape (M, 3, n), m.
+            by_nodes: derivative of the points with respect to the unknowns, shape (M, 3, n), m.
             gap: the gap.
-            slides: whether its place is where the gap is least, and not a given one.
+            slides: whether its place is where the gap is least; else it is fixed.
         """
         moved = np.tensordot(gap.rows.value, by_nodes, 1)
         second = moved.T @ gap.curvature @ moved
@@ -313,14 +313,14 @@ class Facing(ABC):
     def rates(
         self, x: FloatArray, v: FloatArray, inputs: Sequence[FloatArray], gap: SectionGap, *, slides: bool
     ) -> tuple[float, float]:
-        """Rate of a gap, 1/s, and its second derivative without the part of the accelerations of the unknowns, 1/s².
+        """Rate of a gap, 1/s, and its second rate at zero accelerations of the unknowns, 1/s².
 
         Args:
             x: unknowns, shape (n,).
             v: rates of the unknowns, shape (n,), 1/s.
             inputs: the stacked inputs, their rates and their accelerations, shape (m,) each.
             gap: the gap.
-            slides: whether its place is where the gap is least, and not a given one.
+            slides: whether its place is where the gap is least; else it is fixed.
         """
         value, rate, acceleration = inputs
         velocities, accelerations = self.points.straight_on(x, value, v, rate)
@@ -335,17 +335,17 @@ class Facing(ABC):
         return first / self.length, second / self.length
 
     def weights(self, gap: SectionGap) -> FloatArray:
-        """Weights of the positions of the points, stacked point by point, whose sum varies as the gap does, 1/m."""
+        """Derivative of a gap with respect to the positions of the points, stacked point by point, shape (3M,), 1/m."""
         return np.outer(gap.rows.value, gap.normal / self.length).ravel()
 
 
 def _address(nodes: FloatArray) -> int:
-    """Where positions are in memory, row after row."""
+    """Address of the positions in memory, row after row."""
     assert nodes.flags.c_contiguous, "positions come from the points, row after row"
     return nodes.ctypes.data
 
 
 def _minimum(place: float, gap: float) -> Minimum:
-    """A section with its gap; rounding alone makes no other one of an end of the rod."""
+    """Return a section with its gap; a place next to an end of the rod, to rounding, counts as that end."""
     inside = AT_END < place < 1.0 - AT_END
     return Minimum(place if inside else float(round(place)), gap, inside)

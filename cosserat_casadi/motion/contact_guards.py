@@ -1,4 +1,4 @@
-"""Guards of the contacts of a motion: forces, places, bends and gaps that stay at zero or above between two events."""
+"""Guards of the contacts of a motion: forces, places, bends and gaps that are not negative between two events."""
 
 from __future__ import annotations
 
@@ -18,38 +18,38 @@ from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.motion_equations import Instant
 
 SAME_PLACE = 0.02
-"""Distance of two sections, over the length, that touch one obstacle, up to which they count as one."""
+"""Distance, over the length, up to which two sections that touch one obstacle count as one contact."""
 
 CLOSE = 1e-7
-"""Gap, over the length, up to which a section of a rod that lies touches: it is held at that height."""
+"""Largest gap, over the length, at which a section of a lying rod touches; the contact keeps the gap at this height."""
 
 ROLLING = 2.0 * FLATTEST
-"""Bend of the gap from which on a rod that lies on one section rolls on from there: it would not lie down at once."""
+"""Bend of the gap above which a rod that lies on one section rolls on from there, and would not lie down at once."""
 
 NO_PULL = 1e-6
-"""Force, in its unit, that one counts as which may pull: a guard that is zero would be an event at once."""
+"""Value, in force units, of the guard of a contact that may pull for now; with zero an event would follow at once."""
 
 
 class GuardKind(IntEnum):
-    """Quantity of a guard: of a contact up to the bend, then of a pair of a rod or body and an obstacle.
+    """Quantity of a guard: up to BEND one for each contact, then one for each pair of a rod or body and an obstacle.
 
-    Members are in the order in which the guards stand one after the other, and their values count the blocks.
+    Guards are stacked in the order of the members, whose values are the indices of their blocks.
     """
 
     FORCE = 0
-    """The force of a contact, which ends where it would pull."""
+    """The force of a contact; the contact ends where the force would pull."""
 
     END = 1
-    """How far a place is from the ends of its rod; a place that slides, from ends of its element and other contacts."""
+    """Distance of a sliding contact from the ends of its element and other contacts; at an end, slope of the gap."""
 
     BEND = 2
-    """The bend of the gap about a section that slides."""
+    """The bend of the gap at a sliding contact."""
 
     GAP = 3
-    """The least gap of what does not touch."""
+    """The least gap of the sections, or the body, that do not touch."""
 
     CLEAR = 4
-    """How little a rod that lies has got up, or how far it is from rolling on over the section that it lies on."""
+    """Distance of a lying rod from having got up, or from rolling on over the section that it lies on."""
 
 
 @dataclass(frozen=True)
@@ -58,16 +58,16 @@ class ContactPhase:
 
     Attributes:
         touches: the contacts.
-        laid: numbers of the pairs of a rod and an obstacle in which the rod lies; never of pairs with a body.
-        follower: of the contacts.
-        floors: least gaps that what does not touch may have, an array for each pair: one for each section of a rod that
-            lies, else one.
-        forces_from: time before which forces may pull: after an impact stiff parts have to come to rest first, s.
-        moment: beginning of the moment in which changes are counted, s.
-        changes: changes in it.
+        laid: indices of the pairs of a rod and an obstacle in which the rod lies; never of pairs with a body.
+        follower: tracker of the places of the contacts.
+        floors: least admissible gaps without contact, an array for each pair: one entry for each section that holds a
+            lying rod, else one entry.
+        forces_from: time before which forces may pull, while stiff parts come to rest after an impact, s.
+        moment: start of the moment in which changes of contact are counted, s.
+        changes: number of changes in that moment.
         closed: cables that are taut, and stops that hold their joints.
-        slopes: slope of the gap for each pair in which a rod lies on one section that it may roll on from; zero of
-            others.
+        slopes: for each pair, slope of the gap at the only section on which a rod lies, if it may roll on from there;
+            else zero.
     """
 
     touches: Touches = ()
@@ -82,7 +82,7 @@ class ContactPhase:
 
 
 def start_inside(facings: Iterable[Facing], depth: float) -> Problem:
-    """The problem of a start with rods or bodies inside obstacles or other rods, by a depth over the length."""
+    """Problem of a motion that starts with rods or bodies inside obstacles or rods, by a depth over the length."""
     pairs = ", ".join(dict.fromkeys(f"{facing.owner!r} in {facing.touched!r}" for facing in facings))
     what = f"a rod is inside an obstacle by {depth:.2g} (over the length) where the motion starts: {pairs}"
     return Problem("simulation.start", what, "start from another shape, or move the obstacle")
@@ -95,7 +95,7 @@ class ContactGuards:
     Attributes:
         size: number of unknowns of the model.
         facings: rods and bodies, with the obstacles that they may touch.
-        meeting_ends: which ends of the rods are one point.
+        meeting_ends: the ends of rods that coincide.
     """
 
     size: int
@@ -103,7 +103,7 @@ class ContactGuards:
     meeting_ends: MeetingEnds
 
     def of(self, piece: Piece, arrangement: ContactPhase) -> Guards:
-        """Forces, places within the rod, bends of gaps, and gaps of all else; they are asked for along the motion."""
+        """Make the function that evaluates all guards along the motion, in the order of :class:`GuardKind`."""
         touches = arrangement.touches
         follower = arrangement.follower
         size = self.size
@@ -145,7 +145,7 @@ class ContactGuards:
         return values
 
     def _within(self, touch: MovingContact, element: int, x: FloatArray, inputs: FloatArray) -> float:
-        """How far a place is from the ends of its element; of an end, how fast the gap rises towards all rods there."""
+        """Distance of a sliding contact from the ends of its element; at an end, least slope of the gap there."""
         if touch.slides:
             ends = self.facings[touch.facing].ends
             return min(touch.place - ends[element], ends[element + 1] - touch.place)
@@ -154,11 +154,11 @@ class ContactGuards:
         return self.meeting_ends.rise(touch, x, inputs)
 
     def lowest(self, number: int, nodes: FloatArray, touches: Sequence[MovingContact]) -> float:
-        """The least gap, over the length, of a rod that does not lie or of a body, but for what touches.
+        """Least gap, over the length, of a rod that does not lie, or of a body, outside its contacts.
 
         Args:
-            number: of the rod or body and obstacle.
-            nodes: positions, shape (M, 3), m.
+            number: index of the pair.
+            nodes: positions of the points, shape (M, 3), m.
             touches: the contacts, at their places.
         """
         own = [touch for touch in touches if touch.facing == number]
@@ -171,7 +171,7 @@ class ContactGuards:
 
 
 def apart(touch: MovingContact, touches: Sequence[MovingContact]) -> float:
-    """How much farther than counts as one place a section that slides is from other contacts of its rod."""
+    """Distance of a sliding contact from other contacts of its rod, less SAME_PLACE; 1 for other contacts."""
     if not touch.slides:
         return 1.0
     others = [one for one in touches if one.facing == touch.facing and one is not touch]
@@ -182,9 +182,9 @@ def guarded(guard: int | None, count: int, facings: int) -> tuple[GuardKind | No
     """Kind of a guard, and the index of its contact, or of its pair of a rod or body and an obstacle.
 
     Args:
-        guard: its number; None for none.
+        guard: index of the guard; None for no guard.
         count: number of contacts.
-        facings: number of rods and obstacles.
+        facings: number of pairs.
     """
     if guard is None:
         return None, 0

@@ -1,4 +1,4 @@
-"""The law of exact contact along a motion, which C computes for models of all sizes; here are its records in memory."""
+"""The law of exact contact along a motion: records in memory for the C code, which serves models of all sizes."""
 
 from __future__ import annotations
 
@@ -34,37 +34,37 @@ INCLUDED = (
 """Files that other libraries include too."""
 
 MOST_TOUCHES = 64
-"""Sections that may touch at once in steps with friction and in exported ones; of more, a step is not solved."""
+"""Most simultaneous contacts in steps with friction and in exported steps; with more, a step is not solved."""
 
 LOOKS = 100
-"""Sections of an element at which gaps are looked at first, in exported steps too.
+"""Sections of an element at which gaps are evaluated first, in exported steps too.
 
-With 64 a section beside an end that presses struck 4e-4 of the length from where it does, with 100 and more 1e-5.
+With 64, a section next to a pressing end struck 4e-4 of the length away from its true place; with 100 and more, 1e-5.
 """
 
 FAR = 0.02
-"""Change of a place, over the length, from which on Newton's method is not believed to have stayed at one minimum."""
+"""Change of a place, over the length, above which Newton's method may have jumped to another minimum of the gap."""
 
 AT_END = 1e-12
-"""Distance from an end, over the length, at which a place is that end."""
+"""Distance from an end, over the length, up to which a place counts as that end."""
 
 NEXT_TO_NOTHING = 1e-30
-"""Distance, m, of two points that are one: the direction from one to the other is unknown."""
+"""Distance, m, up to which two points coincide: the direction from one to the other is unknown."""
 
 MOST_PLACINGS = 20
-"""Newton iterations for the place where a gap is least."""
+"""Most Newton iterations for the place where a gap is least."""
 
 BEYOND = 0.05
-"""How far beyond the ends of a rod and of its elements polynomials are followed, over the length."""
+"""Distance beyond the ends of a rod and of its elements up to which polynomials are evaluated, over the length."""
 
 OFF = 10.0
-"""Gap of a section, over the largest fall of the gap up to the next one, from which on the rod is off the obstacle."""
+"""Gap, over its largest fall up to the next section, above which the rod is taken to be off the obstacle."""
 
 NO_COMPILER = "a motion in exact contact is computed by C code, and {why}"
 REMEDY = "{remedy}; or give each obstacle a width, m: contact is smooth then"
 
 KERNEL_ARGUMENTS = 6
-"""Arguments of a function that the law asks for, at most."""
+"""Most arguments of a function that the law calls."""
 
 CALL = ctypes.CFUNCTYPE(ctypes.c_int)
 
@@ -131,10 +131,10 @@ class StepContactsRecord(ctypes.Structure):
 
 
 GAP_NUMBERS = 20
-"""Numbers of a gap before the weights: place, value, slope, bend, normal, curvature, tangent, and two counts in one."""
+"""Numbers of a gap before its weights: place, value, slope, bend, normal, curvature, tangent, two counts in one."""
 
 GAP_COUNTS = 19
-"""The entry that the two counts are in: the first node of the element, and their number."""
+"""Entry with the two counts: index of the first node of the element, and number of its nodes."""
 
 DOUBLE = ctypes.c_double
 ARGUMENTS: dict[str, tuple[Any, Sequence[Any]]] = {
@@ -157,7 +157,7 @@ ARGUMENTS: dict[str, tuple[Any, Sequence[Any]]] = {
         (POINTER, POINTER, ctypes.c_int, DOUBLE, POINTER, POINTER, POINTER),
     ),
 }
-"""Functions of the law: result, and arguments."""
+"""Functions of the contact law in C: type of the result, and types of the arguments."""
 
 
 @lru_cache(maxsize=1)
@@ -184,7 +184,7 @@ def compiled_law() -> ctypes.CDLL:
 
 @contextmanager
 def without_compiler() -> Iterator[None]:
-    """Tell where there is no compiler, or it fails, that a motion in exact contact needs one."""
+    """Explain the error of a missing or failing compiler: a motion in exact contact needs one."""
     try:
         yield
     except ExportError as error:
@@ -194,7 +194,7 @@ def without_compiler() -> Iterator[None]:
 
 
 def words_of_facings() -> dict[str, Any]:
-    """Limits of ``facings.c`` by their names in templates."""
+    """Limits of ``facings.c``, by their names in templates."""
     return {
         "kernel_arguments": KERNEL_ARGUMENTS,
         "looks": LOOKS,
@@ -215,22 +215,22 @@ def _words() -> dict[str, Any]:
 
 
 def called(name: str, *arguments: Any) -> Any:
-    """The result of a function of the law."""
+    """Call a function of the contact law in C."""
     result = getattr(compiled_law(), name)(*arguments)
     raise_what_was_raised()
     return result
 
 
 def least_pushes(compliance: FloatArray, rates: FloatArray, tolerance: float) -> FloatArray | None:
-    """Forces f of constraints that open at rates q + W f: f ≥ 0, q + W f ≥ 0, one of both zero, shape (m,).
+    """Solve the linear complementarity problem f ≥ 0, q + W f ≥ 0, fᵀ (q + W f) = 0 for the forces f, shape (m,).
 
     Args:
-        compliance: W, symmetric and positive semidefinite but for units of the forces, shape (m, m).
-        rates: q, shape (m,).
-        tolerance: rate below zero that counts as none.
+        compliance: W, symmetric and positive semidefinite up to the units of the forces, shape (m, m).
+        rates: opening rates q without forces, shape (m,).
+        tolerance: rate below zero that counts as zero.
 
     Returns:
-        the forces; None where rounding keeps them from settling. Constraints that no forces stop close anyway.
+        the forces; None if rounding keeps them from settling. Constraints that no forces can stop close all the same.
     """
     count = len(rates)
     forces = np.zeros(count)
@@ -246,15 +246,15 @@ def least_pushes(compliance: FloatArray, rates: FloatArray, tolerance: float) ->
 
 @lru_cache(maxsize=1)
 def gap_size() -> int:
-    """Numbers that a gap takes in memory: of a section, then of the nearest section of another rod, if there is one.
+    """Numbers that a gap takes in memory: for a section, then for the nearest section of another rod, if there is one.
 
-    Both have weights of as many nodes as an element may have.
+    Both parts reserve weights for the largest number of nodes of an element.
     """
     return int(compiled_law().contact_records(5)) // ctypes.sizeof(DOUBLE)
 
 
 def function_record(call: RepeatedCall) -> Held:
-    """A function of a model as the law calls it: in machine code, or by CasADi's virtual machine."""
+    """Make the record with which C calls a function of a model: in machine code, or by CasADi's virtual machine."""
     held = Held(KernelRecord())
     record = held.record
     give_memory(held, call.arguments, call.results[0])
@@ -270,7 +270,7 @@ def function_record(call: RepeatedCall) -> Held:
 
 
 def program_record(function: ca.Function) -> Held:
-    """A function with one result as C calls it: as a program, or by CasADi's virtual machine."""
+    """Make the record with which C calls a function with one result: as a program, or by CasADi's virtual machine."""
     program = scalar_program(function)
     if program is None:
         return function_record(RepeatedCall(function))
@@ -286,14 +286,14 @@ def program_record(function: ca.Function) -> Held:
 
 
 def called_in_c(function: ca.Function, library: str | None) -> Held:
-    """A function from a shared object as C calls it; without a shared object as a program."""
+    """Make the record with which C calls a function: from a shared object, or without one as a program."""
     if library is not None:
         return function_record(repeated(function, library))
     return program_record(function if chooses(function) else function.expand())
 
 
 def give_memory(held: Held, arguments: Sequence[FloatArray], result: FloatArray) -> None:
-    """Have the record of a function point at its arguments and its result."""
+    """Make the record of a function point to its arguments and its result."""
     record = held.record
     for number, array in enumerate(arguments):
         held.keep(array)

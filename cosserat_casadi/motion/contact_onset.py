@@ -1,4 +1,4 @@
-"""The beginning of a stretch of a motion: impacts, and which of the sections that touch press from then on."""
+"""The beginning of a stretch of a motion: impacts, and which of the touching sections press from then on."""
 
 from __future__ import annotations
 
@@ -24,25 +24,25 @@ from cosserat_casadi.numerics.consistent_start import (
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
 STILL = 1e-9
-"""Speed of opening, over the speed of approach or in lengths per interval, that counts as none."""
+"""Speed of opening that counts as zero, over the speed of approach, or in lengths per interval."""
 
 STEADY = 1e-6
-"""Acceleration of opening, over the largest of all sections that touch, that counts as none."""
+"""Acceleration of opening that counts as zero, over the largest one of all touching sections."""
 
 FORCELESS = 1e-10
-"""Force of contact in EI/ℓ² whose acceleration counts as none: rounding of what the balances of a rod at rest sum."""
+"""Contact force in EI/ℓ² whose acceleration counts as zero: the rounding of the balances of a rod at rest."""
 
 LOW = 1e-6
-"""Height over the length up to which a bounce is not followed: the section stays."""
+"""Height, over the length, up to which a bounce is not followed; the contact persists instead."""
 
 BRIEF = 1e-3
-"""Share of the interval after an event over which accelerations decide what presses.
+"""Time over which accelerations decide what presses, over the interval after an event.
 
-Stiff modes that are damped hard answer to a blow, and forget it, in far less: at the very beginning they would decide.
+Stiff, strongly damped modes answer to a blow and decay in far less time; accelerations of the instant would be theirs.
 """
 
 LONGER = 2.0
-"""Factor on the time over which accelerations decide what presses, with each change of contact in a moment."""
+"""Factor by which each change of contact in a moment lengthens the time over which accelerations decide."""
 
 LONGEST = 0.1
 """Longest time over which accelerations decide what presses, over the interval."""
@@ -53,9 +53,9 @@ class Struck:
     """The state after an impact.
 
     Attributes:
-        v: velocities after it, shape (n,), 1/s.
-        impulses: of the sections that touch, in EI/ℓ² s, shape (m,).
-        speeds: rates of their gaps before it and after it, summed, shape (m,), 1/s.
+        v: velocities after the impact, shape (n,), 1/s.
+        impulses: impulses at the touching sections, in EI/ℓ² s, shape (m,).
+        speeds: sum of the rates of each gap before and after the impact, shape (m,), 1/s.
         staying: contacts that stay closed.
     """
 
@@ -67,17 +67,17 @@ class Struck:
 
 @dataclass(frozen=True)
 class Onset:
-    """The state at which a stretch begins.
+    """The state at which a stretch of the motion begins, and the problems of impact and contact there.
 
     Attributes:
         model: the model, built for a motion.
-        facings: its rods and obstacles that may touch.
-        plain: its equations without contact.
-        piece: of its inputs.
+        facings: pairs of a rod or body and an obstacle that may touch.
+        plain: equations of motion without contact.
+        piece: piece of the inputs.
         before: state before the event, without forces of contact.
-        interval: time after it in which gaps are smooth, s.
-        changes: of contact in the moment before: where there are many, longer times decide.
-        saddle: the linear system of the equations without contact there.
+        interval: time after the event in which gaps are smooth, s.
+        changes: number of changes of contact in the moment before; with many, longer times decide.
+        saddle: linear system of the equations of motion without contact at the event.
     """
 
     model: Model
@@ -96,7 +96,7 @@ class Onset:
 
     @property
     def driven(self) -> bool:
-        """Whether inputs move at the event: a base that does takes part in an impact."""
+        """Whether inputs move at the event: a moving base does work in an impact."""
         return bool(np.any(self.inputs.rate))
 
     @property
@@ -105,11 +105,11 @@ class Onset:
         return min(BRIEF * LONGER**self.changes, LONGEST) * self.interval
 
     def at(self, v: FloatArray) -> Onset:
-        """This state with other velocities."""
+        """Return the state with other velocities."""
         return replace(self, before=replace(self.before, v=v))
 
     def start(self, pressing: Touches) -> ConsistentStart:
-        """Accelerations and forces while some sections press."""
+        """Solve for accelerations and contact forces while some sections press."""
         equations = self.plain
         saddle = self.saddle
         if pressing:
@@ -119,21 +119,21 @@ class Onset:
         return consistent_start(equations, self.before.time, x, v, self.interval, saddle)
 
     def held_still(self, touches: Touches) -> Onset:
-        """This state with velocities at which some sections neither approach nor leave.
+        """Return the state with the nearest velocities at which the gaps of some contacts have zero rate.
 
-        Steps keep gaps at zero, and their rates as far as the steps are exact: the rates that remain would pass for an
-            impact.
+        Steps keep gaps at zero, but their rates only up to the error of the steps; the remaining rates would pass for
+        an impact.
         """
         if not touches:
             return self
         return self.at(self.before.v + least_change(self.saddle, *self._gradients(touches), self.rates(touches)))
 
     def struck(self, touching: Touches, known: int) -> Struck | None:
-        """The state after an impact at sections without a gap; None where no impulses settle it.
+        """Solve the impact at closed gaps; None if no impulses settle it.
 
         Args:
-            touching: these sections.
-            known: how many sections, the first ones, touched before: what presses them on in the blow does not rebound.
+            touching: the contacts with closed gaps.
+            known: number of contacts, the first ones, that lasted before the impact; they do not rebound.
         """
         if not touching:
             return Struck(self.before.v, np.zeros(0), np.zeros(0), ())
@@ -154,7 +154,7 @@ class Onset:
         return Struck(v, impulses, speeds + rates, staying)
 
     def soon_back(self, leaving: Touches, staying: Touches) -> Touches:
-        """Sections that leave, and would be back without having risen above the least bounce."""
+        """Contacts that open, but would close again without having risen above the least bounce."""
         if not leaving:
             return ()
         opening, compliance, tolerance = self._openings((*leaving, *staying))
@@ -169,7 +169,7 @@ class Onset:
         return tuple(touch for touch, is_low in zip(leaving, low, strict=True) if is_low)
 
     def pressing(self, candidates: Touches) -> Touches | None:
-        """Which of the sections that touch, and neither approach nor leave, press; None where nothing settles it."""
+        """Select the contacts that press, among candidates whose gaps have zero rate; None if nothing settles it."""
         if not candidates:
             return ()
         opening, compliance, tolerance = self._openings(candidates)
@@ -184,14 +184,14 @@ class Onset:
         return float(kinetic)
 
     def rates(self, touches: Touches) -> FloatArray:
-        """Rates of the gaps of some sections, shape (m,), 1/s."""
+        """Rates of the gaps of some contacts, shape (m,), 1/s."""
         return self._follower(touches).rates(self.before.x, self.before.v, self.inputs)[0]
 
     def _openings(self, touches: Touches) -> tuple[FloatArray, FloatArray, float]:
-        """Second derivatives of gaps without forces, by forces, and the one that counts as none, 1/s².
+        """Second rates of gaps without forces, their derivative by forces, and the value that counts as zero, 1/s².
 
-        What counts as none is judged by the accelerations and forces of this instant: how long the motion goes on says
-        nothing of these.
+        The value that counts as zero follows from the accelerations and forces of the instant, not from the duration of
+        the motion.
         """
         _, turning = self._follower(touches).rates(self.before.x, self.before.v, self.inputs)
         gradients, pushes = self._gradients(touches)
@@ -204,7 +204,7 @@ class Onset:
         return opening, compliance, tolerance
 
     def _gradients(self, touches: Touches) -> tuple[FloatArray, FloatArray]:
-        """Gradients of gaps, and what unit forces of their contacts do to the equations, shape (m, n) each."""
+        """Gradients of gaps, and generalised forces of unit contact forces in the equations, shape (m, n) each."""
         follower, x = self._follower(touches), self.before.x
         _, gaps = follower.gaps(x, self.inputs.value)
         gradients = follower.gradients(x, self.inputs.value, gaps)
@@ -215,5 +215,5 @@ class Onset:
 
 
 def _padded(values: FloatArray, touches: Touches) -> FloatArray:
-    """Unknowns, or their rates, with zeros for the forces of contact."""
+    """Append zeros for the contact forces to the unknowns or their rates."""
     return np.concatenate([values, np.zeros(len(touches))])

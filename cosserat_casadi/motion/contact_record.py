@@ -28,12 +28,12 @@ class MotionContact:
         obstacle: name of the obstacle, or of the other rod.
         owner: name of the rod, or of the body, that touches.
         at: abscissa X of the section; 0 of a body.
-        force: on the rod along the normal of the obstacle, world axes, shape (3,), N.
-        lies: whether it is one of the sections of a rod that lies; else the section where the gap is least, or an end.
-        of_body: whether it is a body that touches.
-        friction: on the rod along the surface, world axes, shape (3,), N; None where the obstacle has no friction.
-        slips: whether it slips, as all does without friction; else it sticks.
-        at_other: abscissa X of the section of the other rod; None where an obstacle is touched.
+        force: force on the rod along the normal of the obstacle, world axes, shape (3,), N.
+        lies: whether it is one of the sections that hold a lying rod; else the gap is least there, or it is an end.
+        of_body: whether a body touches.
+        friction: force on the rod along the surface, world axes, shape (3,), N; None for an obstacle without friction.
+        slips: whether the contact slips; it always does without friction. Else it sticks.
+        at_other: abscissa X of the section of the other rod; None if an obstacle is touched.
     """
 
     obstacle: str
@@ -48,14 +48,14 @@ class MotionContact:
 
 
 class Inside(NamedTuple):
-    """A section, or a body, and how deep it is inside an obstacle.
+    """Depth of a section or a body inside an obstacle.
 
     Attributes:
-        depth: over the length of the rod; negative outside.
+        depth: depth over the length of the rod; negative outside.
         owner: name of the rod, or of the body.
         obstacle: name of the obstacle.
         place: abscissa X of the section; 0 of a body.
-        of_body: whether it is a body.
+        of_body: whether a body is inside.
     """
 
     depth: float
@@ -67,13 +67,13 @@ class Inside(NamedTuple):
 
 @dataclass(frozen=True)
 class Stretch:
-    """A part of a motion in which the same sections touch.
+    """A part of a motion, between two events, in which the contacts stay the same.
 
     Attributes:
-        piece: of the inputs.
-        touches: the sections, with their places where it begins.
-        steps: of the motion, with the forces of contact behind the unknowns of the model.
-        laid: numbers of the pairs of a rod and an obstacle in which the rod lies.
+        piece: piece of the inputs.
+        touches: the contacts, with their places at the start.
+        steps: steps of the motion, with the contact forces appended to the unknowns of the model.
+        laid: indices of the pairs of a rod and an obstacle in which the rod lies.
     """
 
     piece: Piece
@@ -88,8 +88,8 @@ class ContactRecord:
 
     Attributes:
         model: the model, built for a motion.
-        stretches: stretches of the motion, one after the other.
-        to_model: a state in the unknowns of the model, with forces of contact behind them, from one of the steps.
+        stretches: stretches of the motion, in order of time.
+        to_model: map from a state of the steps to a state in the unknowns of the model, contact forces appended.
     """
 
     model: Model
@@ -100,8 +100,8 @@ class ContactRecord:
         """The contacts at an instant of a step.
 
         Args:
-            number: of the step, counted from the start of the motion; none where there are no steps.
-            instant: in the unknowns of the model, with forces of contact.
+            number: number of the step, counted from the start of the motion; ignored if there are no steps.
+            instant: state in the unknowns of the model, with the contact forces appended.
         """
         if not self._begins:
             return ()
@@ -129,7 +129,7 @@ class ContactRecord:
         return tuple(found)
 
     def powers(self, stages: Sequence[Instant]) -> FloatArray:
-        """Power of moving bases and lengths against the forces of contact at all stages of all steps, shape (k,), W.
+        """Power of moving bases and lengths against the contact forces at all stages of all steps, shape (k,), W.
 
         A contact does no work: its power on the unknowns is the negative of its power on bases and lengths that move.
         """
@@ -153,7 +153,7 @@ class ContactRecord:
         return powers
 
     def deepest(self, x: FloatArray, inputs: FloatArray) -> Inside:
-        """The section that is deepest inside an obstacle at a state."""
+        """Find the section or body that is deepest inside an obstacle at a state."""
         found = []
         for facing in self._facings:
             minimum = facing.deepest(facing.nodes(x, inputs))
@@ -166,7 +166,7 @@ class ContactRecord:
 
     @cached_property
     def _begins(self) -> list[tuple[Stretch, Touches, TimeStep]]:
-        """The stretch of each step, what touches where the step begins, and the step."""
+        """Triples for all steps: the stretch, the contacts at the start of the step, and the step."""
         size = self.model.size
         begins = []
         for stretch in self.stretches:

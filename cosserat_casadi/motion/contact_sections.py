@@ -1,9 +1,9 @@
-"""A rod or a body in motion against one obstacle: the sections of the rod that may touch it, or the ball of the body.
+"""A rod or a body in motion against one obstacle: the sections of the rod, or the ball of the body, that may touch it.
 
-Positions between the nodes follow the polynomials through the nodes, as results have them.
+Positions between the nodes follow the polynomials through the nodes, as in results.
 
-A rod on polynomials cannot lie flat along a part of an element: its gap is zero at points and ripples between them. It
-is kept out at sections that are close beside the ripples, and the remaining ripples are checked at the end.
+A polynomial rod cannot lie flat along part of an element: its gap is zero at points, with ripples between them. A lying
+rod is held at sections that are close compared with the ripples, whose depth is checked at the end.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ from cosserat_casadi.motion.contact_gap import Facing
 from cosserat_casadi.motion.contact_law import LOOKS
 
 BENDING = (0, 1)
-"""Numbers of the strains that bend a rod."""
+"""Indices of the strains that bend a rod."""
 
 SECTIONS_FOR_MODE = 3
-"""Sections of an element for each of its modes of bending.
+"""Sections that hold a lying rod, for each bending mode of an element.
 
-One would do to hold it still. With eight modes a rod that lies on a table was then 1.1e-3 of its length deep between
-them, and 5e-5 with three, at much the same cost of time.
+One section a mode would hold the rod still. But a rod on a table, with eight modes, was then 1.1e-3 of its length deep
+between the sections, and 5e-5 with three a mode, at much the same cost.
 """
 
 
@@ -42,23 +42,23 @@ class RodFacing(Facing):
     """A rod and an obstacle that it may touch.
 
     Attributes:
-        watched_ends: whether base and tip may be where it touches; not where they are held, or another rod has them.
+        watched_ends: whether base and tip are watched for contact, see ``coincident_ends.watched_ends``.
     """
 
     watched_ends: tuple[bool, bool]
 
     @cached_property
     def length(self) -> float:
-        """Length of the rod that gaps are counted in, m."""
+        """Length of the rod, by which gaps are divided, m."""
         return float(self.model.discrete.rods[self.owner].properties.length)
 
     @cached_property
     def laid_at(self) -> FloatArray:
-        """Abscissae of these sections, base to tip, shape (k,)."""
+        """Abscissae of the sections that hold the rod while it lies, from base to tip, shape (k,)."""
         return laid_sections(self.model, self.owner, self.watched_ends)
 
     def describe(self, held: Held) -> None:
-        """Write elements, and how sections follow from nodes, into the record."""
+        """Write the elements, and the interpolation of sections from nodes, into the record."""
         record = held.record
         record.elements, record.nodes = len(self.ends) - 1, self.nodes_of_element
         record.watches_base, record.watches_tip = self.watched_ends
@@ -72,7 +72,7 @@ class RodFacing(Facing):
 
     @cached_property
     def ends(self) -> Sequence[float]:
-        """Ends of the elements, base to tip: the bend of the gap jumps where curvatures do."""
+        """Ends of the elements, from base to tip; the bend of the gap jumps there, as curvatures do."""
         return self._grid.known_places
 
     @property
@@ -93,7 +93,7 @@ class RodFacing(Facing):
 
     @property
     def looks(self) -> FloatArray:
-        """Weights of the nodes of an element at LOOKS sections spread evenly over it, and at its end."""
+        """Interpolation from the nodes of an element to LOOKS even sections and its end, (LOOKS + 1)×(N + 1)."""
         local = 2.0 * np.linspace(0.0, 1.0, LOOKS + 1) - 1.0
         return np.asarray(polynomial.chebvander(local, self.nodes_of_element - 1) @ self.to_coefficients)
 
@@ -109,33 +109,33 @@ class BodyFacing(Facing):
     """A body and an obstacle that it may touch.
 
     Attributes:
-        radius: of the ball, m.
+        radius: radius of the ball, m.
     """
 
     radius: float
 
     @cached_property
     def length(self) -> float:
-        """Length of the longest rod that holds it, m."""
+        """Length of the longest rod that holds the body, m."""
         return float(self.model.discrete.body_frame(self.owner).length)
 
     @property
     def radii(self) -> tuple[float, float]:
-        """Radius of the ball at base and tip, twice one number, m."""
+        """Radius of the ball, twice, m."""
         return self.radius, self.radius
 
     @property
     def ends(self) -> Sequence[float]:
-        """The abscissae of base and tip of a rod, whatever the body."""
+        """The abscissae 0 and 1, for any body."""
         return (0.0, 1.0)
 
     @property
     def laid_at(self) -> FloatArray:
-        """Places that a body lies at, shape (0,): a ball touches at one point."""
+        """Empty array, shape (0,): a ball touches at one point and does not lie."""
         return np.zeros(0)
 
     def describe(self, held: Held) -> None:
-        """Write into the record that it is one point."""
+        """Write into the record that the body is one point."""
         held.record.elements = held.record.nodes = 1
 
 
@@ -148,12 +148,12 @@ def lobatto(count: int) -> FloatArray:
 
 
 def laid_sections(model: Model, rod: str, ends: tuple[bool, bool]) -> FloatArray:
-    """Abscissae of these sections, base to tip, shape (k,): Lobatto's in each element.
+    """Abscissae of the sections that hold a lying rod, base to tip, shape (k,): Lobatto nodes of each element.
 
     Args:
         model: the model.
         rod: name of the rod.
-        ends: whether base and tip are among them; not where they are held, or another rod has them.
+        ends: whether base and tip are among them, see ``coincident_ends.watched_ends``.
     """
     discretisation = model.discretisation[rod]
     (record,) = [one for one in model.scene.rods if one.name == rod]

@@ -1,4 +1,4 @@
-"""How far unknowns move the sections of a scene: what turns a tolerance on paths into one on unknowns."""
+"""Displacements of sections by the unknowns: they turn a tolerance on paths into a tolerance on unknowns."""
 
 from __future__ import annotations
 
@@ -17,30 +17,30 @@ from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.tangent import Tangent
 
 LEVER = 0.1
-"""Arm, relative to the length, at which a turn of a section counts: a bent rod swings by its torsion."""
+"""Lever arm, over the length, with which a rotation of a section counts: torsion makes a bent rod swing."""
 
 QUATERNION = 2.0
-"""Turn of a frame by a unit of its quaternion, rad, on an arm of one length."""
+"""Rotation of a frame by a unit of its quaternion, rad; its lever arm is one length."""
 
 
 FUNCTION = "motion_displacements"
-"""Name of the displacements in C."""
+"""Name of the function of displacements in C."""
 
 
 def displacements(model: Model, library: str | None = None) -> FloatArray:
-    """Largest displacement over the length that a unit of each unknown makes, shape (size,); 1 of algebraic ones.
+    """Largest displacement of a section by a unit of each unknown, over the length, shape (size,); 1 if algebraic.
 
-    Of strain coordinates at the unloaded rod, which a rod that moves is at times as good as any.
+    Displacements by strain coordinates are taken at the unloaded rod, a shape as representative of a motion as any.
 
     Args:
         model: the model.
-        library: shared object that has :func:`function_of_displacements`; None without one.
+        library: shared object that contains :func:`function_of_displacements`; None without one.
     """
     return kept_with(model, "_displacements", lambda: _displacements(model, library))
 
 
 def function_of_displacements(model: Model) -> ca.Function:
-    """The displacements as a function without arguments, for a shared object: computing them takes as long as steps."""
+    """The displacements as a CasADi function without arguments, for a shared object: Python takes long for them."""
     return ca.Function(FUNCTION, [], [ca.DM(displacements(model))], [], ["displacements"])
 
 
@@ -67,7 +67,7 @@ def _computed(model: Model) -> FloatArray:
 
 
 def _of_strains(rod: DiscreteRod) -> FloatArray:
-    """Largest displacement over the length by a unit of each strain coordinate, shape (n,)."""
+    """Largest displacement by a unit of each strain coordinate, over the length, shape (n,)."""
     # Numbers throughout: to write expressions first takes several times as long.
     unloaded = shape(rod, ca.DM.zeros(rod.size))
     tangent = Tangent(InverseGeometricModel(Statics(unloaded, [])))

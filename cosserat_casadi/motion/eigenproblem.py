@@ -1,6 +1,6 @@
 """Eigenvalues of (λ² M + λ C + K) z = 0, where M may be singular and K singular or indefinite.
 
-Coordinates without mass, and high frequencies, are what K resolves best: eigenvalues of the inverse are sought. With
+The inverse resolves low frequencies best, and maps directions without mass to zero, so its eigenvalues are sought. With
 F = (K + s M)⁻¹ and M = N Nᵀ the nonzero eigenvalues ν of Nᵀ F N are 1/(s − λ²), however singular M
 is: directions without mass drop out. The shift s, about the square of the lowest frequency, keeps rigid motions and
 critical equilibria from making the matrix singular.
@@ -23,33 +23,33 @@ from cosserat_casadi.maths.typing import FloatArray
 ComplexArray: TypeAlias = npt.NDArray[np.complex128]
 
 ZERO = 1e-8
-"""A square of an eigenvalue below this share of the shift is zero to rounding: K is known to no more digits."""
+"""A squared eigenvalue below this share of the shift counts as zero: the rounding of K decides it."""
 
 INFINITE = 1e-14
-"""An inverse square below this share of the largest belongs to a direction without mass."""
+"""An inverse squared eigenvalue below this share of the largest one belongs to a direction without mass."""
 
 NOTHING = 1e-12
-"""Stiffness and mass, over stiffness and mass of the rods, below which a direction has none."""
+"""Stiffness and mass of a direction, over those of the rods, below which they count as zero."""
 
 REAL = 1e-9
-"""A real part below this share of an eigenvalue without damping is rounding."""
+"""A real part below this share of an undamped eigenvalue is rounding."""
 
 NO_DAMPING = 1e-13
-"""A real part below this share of an eigenvalue with damping is rounding: the motion meets none of the damping."""
+"""A real part below this share of an eigenvalue of a damped scene is rounding: the mode is undamped."""
 
 SAME = 1e-4
-"""Singular value below which a shape of a rigid motion repeats others."""
+"""Singular value below which the shape of a rigid motion depends on others."""
 
 
 @dataclass(frozen=True)
 class Eigenpairs:
-    """Eigenvalues with their vectors, ordered by size; of a conjugate pair the one with positive imaginary part.
+    """Eigenvalues with their vectors, by increasing size; of a conjugate pair, the one with positive imaginary part.
 
-    A zero, which belongs to a rigid or a neutral motion z = a + b t, counts once for each direction.
+    An eigenvalue zero, of a rigid or a neutral motion z = a + b t, appears once for each direction.
 
     Attributes:
         values: λ, shape (p,), 1/s.
-        vectors: one a column, shape (k, p).
+        vectors: eigenvectors as columns, shape (k, p).
     """
 
     values: ComplexArray
@@ -57,7 +57,7 @@ class Eigenpairs:
 
     @staticmethod
     def sorted(values: ComplexArray, vectors: ComplexArray) -> Eigenpairs:
-        """Pairs in their order: by size, of two alike in size the growing one first."""
+        """Sort eigenpairs by size; of two that are equal in size, the growing one comes first."""
         # What differs by rounding alone is of one size, so that the order does not depend on it.
         sizes = np.abs(values)
         digits = np.array([float(f"{size:.9e}") for size in sizes])
@@ -66,7 +66,7 @@ class Eigenpairs:
 
 
 def natural_shift(mass: FloatArray) -> float:
-    """The shift s: the inverse of the largest eigenvalue of M, in 1/s², where K has entries of order one.
+    """Shift s: the inverse of the largest eigenvalue of M, 1/s², for K with entries of order one.
 
     Raises:
         ValueError: nothing has mass.
@@ -78,18 +78,18 @@ def natural_shift(mass: FloatArray) -> float:
 
 
 def slowest_told(mass: FloatArray) -> float:
-    """Least |λ| that is told from zero, 1/s; the mass as in :func:`eigenpairs`."""
+    """Least |λ| that can be distinguished from zero, 1/s, for the mass matrix of :func:`eigenpairs`."""
     return float(np.sqrt(ZERO * natural_shift(mass)))
 
 
 def eigenpairs(stiffness: FloatArray, damping: FloatArray, mass: FloatArray, *, conservative: bool) -> Eigenpairs:
-    """All finite eigenvalues.
+    """Compute all finite eigenvalues with their vectors.
 
     Args:
         stiffness: K, shape (k, k).
         damping: C, shape (k, k).
         mass: M, symmetric and positive semidefinite, shape (k, k).
-        conservative: whether K is symmetric, but for rounding.
+        conservative: whether K is symmetric up to rounding.
 
     Raises:
         ValueError: M is zero.
@@ -100,7 +100,7 @@ def eigenpairs(stiffness: FloatArray, damping: FloatArray, mass: FloatArray, *, 
 
 
 def undamped_modes(stiffness: FloatArray, mass: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Modes of symmetric matrices: λ² = −ω², the lowest frequency first, and vectors Φ with Φᵀ M Φ = I.
+    """Compute the modes of symmetric matrices: λ² = −ω², lowest frequency first, and vectors Φ with Φᵀ M Φ = I.
 
     Args:
         stiffness: K, symmetric, shape (k, k).
@@ -124,7 +124,7 @@ def undamped_modes(stiffness: FloatArray, mass: FloatArray) -> tuple[FloatArray,
 
 
 def _undamped(stiffness: FloatArray, mass: FloatArray, conservative: bool) -> Eigenpairs:
-    """Eigenvalues in pairs ±λ, from the eigenvalues λ²."""
+    """Eigenpairs without damping, from the eigenvalues λ²."""
     shift = natural_shift(mass)
     if conservative:
         real_squares, real_vectors = undamped_modes(stiffness, mass)
@@ -142,7 +142,7 @@ def _undamped(stiffness: FloatArray, mass: FloatArray, conservative: bool) -> Ei
 
 
 def _asymmetric_modes(stiffness: FloatArray, mass: FloatArray) -> tuple[ComplexArray, ComplexArray]:
-    """λ² and vectors where K is not symmetric."""
+    """Eigenvalues λ² and vectors for a K that is not symmetric."""
     shift = natural_shift(mass)
     root = _root(mass)
     response = _inverse(stiffness + shift * mass) @ root
@@ -155,7 +155,7 @@ def _asymmetric_modes(stiffness: FloatArray, mass: FloatArray) -> tuple[ComplexA
 
 
 def _roots_of(square: complex, shift: float) -> list[complex]:
-    """The eigenvalues λ that a λ² stands for, without eigenvalues of negative imaginary part."""
+    """Eigenvalues λ of one λ², without those of negative imaginary part."""
     if abs(square) <= ZERO * shift:
         return [0j]
     root = complex(np.sqrt(complex(square)))
@@ -171,7 +171,7 @@ def _roots_of(square: complex, shift: float) -> list[complex]:
 
 
 def _damped(stiffness: FloatArray, damping: FloatArray, mass: FloatArray) -> Eigenpairs:
-    """Eigenvalues of the quadratic problem, in units of the root of the shift."""
+    """Eigenpairs of the quadratic problem with damping, solved in units of the root of the shift."""
     shift = natural_shift(mass)
     rate = np.sqrt(shift)
     shifted_stiffness = stiffness + rate * damping + shift * mass
@@ -199,7 +199,7 @@ def _damped(stiffness: FloatArray, damping: FloatArray, mass: FloatArray) -> Eig
 
 
 def _without_conjugates(values: ComplexArray, shapes: ComplexArray, shift: float) -> Eigenpairs:
-    """Eigenvalues with one of each conjugate pair, and zeros as often as they have independent shapes."""
+    """Keep one of each conjugate pair, and as many zeros as there are independent shapes."""
     zero = np.abs(values) ** 2 <= ZERO * shift
     kept_values: list[complex] = []
     kept_shapes: list[ComplexArray] = []
@@ -218,7 +218,7 @@ def _without_conjugates(values: ComplexArray, shapes: ComplexArray, shift: float
 
 
 def _independent(shapes: ComplexArray) -> ComplexArray:
-    """Real orthonormal shapes that span the complex ones, shape (k, p)."""
+    """Real orthonormal shapes that span complex shapes, shape (k, p)."""
     if not shapes.size:
         return shapes
     parts = np.hstack([shapes.real, shapes.imag])
@@ -237,9 +237,9 @@ def _collected(values: list[complex], columns: list[ComplexArray], size: int) ->
 
 
 def _inverse(shifted: FloatArray) -> FloatArray:
-    """Inverse of K + s M, of order one, on all directions that have stiffness or mass.
+    """Invert K + s M, which is of order one, on all directions that have stiffness or mass.
 
-    A line without rotary inertia that turns about itself has neither: no equation tells how it moves.
+    A rod without rotary inertia that turns about its straight axis has neither: its rotation is undetermined.
     """
     left, singular, right = np.linalg.svd(shifted)
     known = singular > NOTHING
@@ -247,14 +247,14 @@ def _inverse(shifted: FloatArray) -> FloatArray:
 
 
 def _root(mass: FloatArray) -> FloatArray:
-    """N with N Nᵀ = M, of as many columns as M has positive eigenvalues."""
+    """Factor N of M = N Nᵀ, with as many columns as M has positive eigenvalues."""
     eigenvalues, vectors = np.linalg.eigh(mass)
     positive = eigenvalues > 0.0
     return np.asarray(vectors[:, positive] * np.sqrt(eigenvalues[positive]))
 
 
 def _row_space(*matrices: FloatArray) -> FloatArray:
-    """Orthonormal basis of the coordinates that any of the matrices sees, shape (k, r)."""
+    """Orthonormal basis of the joint row space of matrices, shape (k, r)."""
     stacked = np.vstack(matrices)
     _, singular, rows = np.linalg.svd(stacked)
     seen = singular > INFINITE * singular.max(initial=0.0)

@@ -20,19 +20,19 @@ from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.numerics.step import TimeStep
 
 Place = tuple[Leg, Instant]
-"""An instant of a motion, and the piece of the inputs that it belongs to."""
+"""An instant of a motion, with the leg that contains it."""
 
 
 def energies_of(
     history: History, rows: FloatArray, moving: frozenset[str], before: EnergyAccount | None = None
 ) -> tuple[Energies, EnergyAccount]:
-    """Energies of a motion at given times, and the account that it would go on with at its end.
+    """Energies of a motion at given times, and its account at the end, with which a continuation begins.
 
     Args:
         history: the motion.
-        rows: times to tell, reached by the motion, ascending, shape (T,), s.
-        moving: names of the inputs that move: a dead force that changes does work, and has no potential energy.
-        before: energies up to where the motion goes on; None for one that begins.
+        rows: times of the result within the motion, ascending, shape (T,), s.
+        moving: names of the inputs that move. A changing dead force does work; a constant one has potential energy.
+        before: account at the start of the motion if it continues another one, else None.
     """
     model = history.model
     times = np.append(rows, history.end.time)
@@ -59,12 +59,12 @@ def energies_of(
 
 
 def _in_impacts(history: History, times: FloatArray, before: float) -> tuple[FloatArray, FloatArray]:
-    """Energy that impacts have taken, and work done in them, up to each time, shape (T,) each, J; before one, at it.
+    """Energy lost in impacts, and work done in them, before each time, shape (T,) each, J.
 
     Args:
         history: the motion.
         times: shape (T,), s.
-        before: energy that impacts have taken up to its begin, J.
+        before: energy lost in impacts up to the start of the motion, J.
     """
     lost = np.full(len(times), before)
     work = np.zeros(len(times))
@@ -76,7 +76,7 @@ def _in_impacts(history: History, times: FloatArray, before: float) -> tuple[Flo
 
 
 def _still(model: Model, moving: frozenset[str]) -> FloatArray:
-    """1 for each load that no moving input changes, else 0, shape (loads,)."""
+    """Mask of the loads that no moving input changes: 1 or 0, shape (loads,)."""
     lengths = {entry.name for entry, _ in model.inputs if entry.of_rod and entry.field == "length"}
     # A rod that grows is weighed by more and more of it.
     if lengths & moving:
@@ -88,13 +88,13 @@ def _still(model: Model, moving: frozenset[str]) -> FloatArray:
 def _integrals(
     history: History, times: FloatArray, working: FloatArray, account: EnergyAccount
 ) -> tuple[FloatArray, FloatArray]:
-    """Energy that was dissipated, and work that was done, up to each time, shape (T,) each, J.
+    """Dissipated energy, and work done, up to each time, shape (T,) each, J.
 
     Args:
         history: the motion.
         times: shape (T,), s.
         working: 1 for each load whose work counts, else 0, shape (loads,).
-        account: of the energies up to the begin of the motion.
+        account: account of the energies at the start of the motion.
     """
     if not history.steps:
         return np.full(len(times), account.dissipated), np.full(len(times), account.work)
@@ -117,7 +117,7 @@ def _integrals(
 
 
 def _powers_are_constant(model: Model, working: FloatArray) -> bool:
-    """Whether the powers that count depend on nothing that moves: the powers of one instant are enough then.
+    """Whether the powers that count are constant in time, so that one instant is enough.
 
     Args:
         model: the model.
@@ -137,7 +137,7 @@ def _up_to(history: History, times: FloatArray, powers: FloatArray, begin: Float
         history: the motion.
         times: shape (T,), s.
         powers: at the stages of the steps, shape (2, steps, stages), W.
-        begin: values of the integrals at the begin of the motion, shape (2,), J.
+        begin: values of the integrals at the start of the motion, shape (2,), J.
     """
     method = history.steps[0][1].method
     sizes = np.array([step.size for _, step in history.steps])
@@ -160,7 +160,7 @@ def _stage_places(leg: Leg, step: TimeStep) -> list[Place]:
 
 
 def _called(function: ca.Function, places: Sequence[Place], *, accelerations: bool) -> list[FloatArray]:
-    """Results of a function of the motion at all places, one a column: shape (entries, places) each."""
+    """Evaluate a function of the motion at all places; each result has shape (entries, places)."""
     columns: list[list[FloatArray]] = []
     for leg, instant in places:
         inputs = leg.piece.at(instant.time)

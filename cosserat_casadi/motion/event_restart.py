@@ -1,4 +1,4 @@
-"""How a motion goes on where its equations change: what cables, stops and contacts have in common."""
+"""Continuation of a motion after its equations change: the interface that cables, stops and contacts share."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
 Phases = TypeVar("Phases")
-"""State of the switches for a while: the cables that are taut and the joints at their stops, or the contacts."""
+"""State of the switches between two events: the taut cables and the joints at their stops, or the contacts."""
 
 HeldPhases = TypeVar("HeldPhases", covariant=True)
-"""Phases of what only holds phases and does not take them."""
+"""Phases in a record that holds phases and never takes them as an argument."""
 
 
 LAID_DOWN = "laid_down"
 """Kind of the event in which a rod is laid down because its contacts change over and over."""
 
 Settling = Callable[[Instant], Instant]
-"""The end of a step, in the unknowns of the model and the forces of contacts ↦ the corrected end."""
+"""End of a step, in the unknowns of the model and the contact forces ↦ corrected end."""
 
 
 @dataclass(frozen=True)
@@ -32,16 +32,16 @@ class ContactEvent:
 
     Attributes:
         kind: "impact", "lift_off", "slide_to_end", "slide_from_end", "slide_over_joint", "lie_down" or "laid_down";
-            with friction "stick" or "slip";
-            of a cable "taut" or "slack", of a joint "stop_hit" or "stop_left".
-        time: s.
-        owner: name of the rod, or of the body, that touches; or of the cable or the joint.
-        obstacle: name of the obstacle, "lower_stop" or "upper_stop"; empty of a cable.
-        place: abscissa X of the section; 0 of a body, a cable or a joint.
-        energy: kinetic energy that the impact took, or the cable that became taut, J; zero for other events.
-        impulse: of the obstacle on the rod, along its normal there, N s, or of the stop on the joint, N s or N m s;
+            with friction also "stick" or "slip";
+            for a cable "taut" or "slack", for a joint "stop_hit" or "stop_left".
+        time: time of the event, s.
+        owner: name of the rod or body that touches, or of the cable or joint.
+        obstacle: name of the obstacle; for a joint "lower_stop" or "upper_stop"; empty for a cable.
+        place: abscissa X of the section; 0 for a body, a cable or a joint.
+        energy: kinetic energy lost in the impact, or as the cable became taut, J; zero for other events.
+        impulse: impulse of the obstacle on the rod along the normal, N s, or of the stop on the joint, N s or N m s;
             zero for other events.
-        of_body: whether it is a body that touches.
+        of_body: whether a body touches.
     """
 
     kind: str
@@ -56,15 +56,15 @@ class ContactEvent:
 
 @dataclass(frozen=True)
 class Restart(Generic[HeldPhases]):
-    """How a motion goes on after an event, or begins.
+    """The state from which a motion goes on after an event, or begins.
 
     Attributes:
-        start: state with accelerations and tensions, or forces of contact.
-        phases: which cables are taut and which joints at their stops, or what touches.
-        lost: energy that an impact has taken, J.
-        work: work that a base or another input in motion has done in the event, J.
+        start: state after the event, with accelerations, and tensions or contact forces.
+        phases: the taut cables and the joints at their stops, or the contacts, after the event.
+        lost: energy lost in impacts, J.
+        work: work of moving inputs, such as a base, in the event, J.
         events: changes of contact.
-        stalled: why there is nothing to go on with; None where there is.
+        stalled: sentence that says why the motion cannot go on; None if it can.
     """
 
     start: ConsistentStart
@@ -76,18 +76,18 @@ class Restart(Generic[HeldPhases]):
 
 
 class Switching(Protocol[Phases]):
-    """Cables and stops, or contacts, that switch between equations of motion, each smooth for a while."""
+    """Cables and stops, or contacts, that switch between equations of motion, which are smooth between events."""
 
     def first_phases(self, x: FloatArray, inputs: FloatArray) -> Phases:
-        """The phases at a state."""
+        """Determine the phases at a state."""
 
     def arranged(self, plain: MotionEquations, piece: Piece, phases: Phases) -> tuple[MotionEquations, Guards | None]:
-        """The equations of motion in these phases, and guards that stay at zero or above while the equations hold."""
+        """Make the equations of motion in these phases, and guards that are not negative while the phases last."""
 
     def settling(self, plain: MotionEquations, piece: Piece, phases: Phases) -> Settling | None:
-        """The correction of the ends of steps in these phases; None for ends as they are."""
+        """Return the correction of the ends of steps in these phases; None if the ends need no correction."""
 
     def restarted(
         self, plain: MotionEquations, piece: Piece, at: Instant, phases: Phases, guard: int | None, interval: float
     ) -> Restart[Phases]:
-        """How a motion goes on, or begins."""
+        """Restart a motion after an event, or start it."""

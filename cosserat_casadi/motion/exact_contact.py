@@ -1,8 +1,8 @@
-"""Exact contact in motion, without friction: rods touch obstacles at sections for a while, and what happens between.
+"""Exact contact in motion, without friction: stretches of a motion with fixed contacts, and the events between them.
 
-Between events the sections that touch stay, and the equations are smooth. Where a gap comes to zero there is an
-impact: impulses along the normals take the speed of approach, and give back the share of it that is the obstacle's
-coefficient of restitution, none by default; they are as small as keeps all that touch apart
+Between events the contacts stay the same, and the equations are smooth. Where a gap comes to zero there is an
+impact: impulses along the normals cancel the speed of approach, and return the fraction of it that is the obstacle's
+coefficient of restitution, zero by default; they are the least that keep all contacts from penetrating
 (F. Pfeiffer, C. Glocker, *Multibody Dynamics with Unilateral Contacts*, Wiley 1996, chapters 5 and 6). Where a force
 comes to zero the section lifts off. Which of several contacts remain is a complementarity problem of velocities, then
 of accelerations. A rod that touches with a bend touches at the section where its gap is least, which slides along it;
@@ -41,28 +41,28 @@ from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
 TOUCHING = 1e-9
-"""Gap, over the length, up to which a section touches where it is looked at."""
+"""Largest gap, over the length, at which a section that is checked touches."""
 
 LEEWAY = 1e-8
-"""How much lower a section without a force may come than it was at the last event, over the length.
+"""Distance, over the length, by which a section without a force may fall below its height at the last event.
 
-It has left, or has come to rest, to rounding: without that it would be back in no time.
+It has lifted off or come to rest up to rounding; with no leeway it would touch again at once.
 """
 
 LEVEL = 1e-9
-"""Slope of a gap that tells no way in which a rod rolls."""
+"""Slope of a gap below which the direction in which a rod rolls is undecided."""
 
 CLOSED = 1e-13
 """Gap, over the length, that counts as closed at the end of a step."""
 
 CLOSINGS = 3
-"""Most changes of the positions that close a gap: the first leaves its square."""
+"""Most corrections of the positions that close a gap; each leaves an error of the order of the gap's square."""
 
 MOST_IN_A_MOMENT = 8
-"""Changes of contact in a moment from which on rods that touch at sliding sections lie down."""
+"""Changes of contact in a moment above which rods that touch at sliding sections lie down."""
 
 MOMENT = 0.1
-"""A moment in which such changes are counted, over the interval after an event."""
+"""Duration of the moment in which such changes are counted, over the interval after an event."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class ExactContacts:
 
     Attributes:
         model: the model, built for a motion.
-        libraries: shared objects that have the functions of its points.
+        libraries: shared objects that contain the functions of its points.
     """
 
     model: Model
@@ -79,17 +79,17 @@ class ExactContacts:
 
     @cached_property
     def facings(self) -> list[Facing]:
-        """Rods and bodies, with the obstacles that they may touch."""
+        """Pairs of a rod or body and an obstacle or rod that may touch."""
         return facings(self.model, self.libraries)
 
     @cached_property
     def meeting_ends(self) -> MeetingEnds:
-        """Which ends of the rods are one point."""
+        """The ends of rods that coincide."""
         return MeetingEnds(self.facings)
 
     @cached_property
     def guards(self) -> ContactGuards:
-        """The guards of all phases: quantities that stay at zero or above while contacts do not change."""
+        """The guards of all phases: quantities that are not negative while contacts do not change."""
         return ContactGuards(self.model.size, self.facings, self.meeting_ends)
 
     def first_phases(self, x: FloatArray, inputs: FloatArray) -> ContactPhase:
@@ -100,24 +100,24 @@ class ExactContacts:
         return ContactPhase(touches, laid, Follower(self.facings, touches))
 
     def arranged(self, plain: MotionEquations, piece: Piece, phases: ContactPhase) -> tuple[MotionEquations, Guards]:
-        """The equations of motion with these contacts, and the guards that stay at zero or above while they hold."""
+        """Make the equations of motion with these contacts, and the guards that are not negative while they last."""
         guards = self.guards.of(piece, phases)
         if not phases.touches:
             return plain, guards
         return with_touches(plain, phases.follower, piece), guards
 
     def settled(self, plain: MotionEquations, piece: Piece, phases: ContactPhase, at: Instant) -> Instant:
-        """The end of a step, whose gaps are closed and stay so: by the smallest changes in the metric of the mass.
+        """Correct the end of a step by the least changes, in the metric of the mass, that close gaps and their rates.
 
-        Stages of steps close gaps and leave their rates open, by as much as the steps are inexact. The next step takes
-        such a rate away: the force that does so is its quotient with the size of that step, and may pull where a step
-        is short. Steps that are cut where a guard vanishes leave gaps open too.
+        The stages of a step close the gaps, but leave their rates open by the error of the step. The next step removes
+        such a rate by a force that is inversely proportional to its size, which may pull if the step is short. A step
+        that is cut where a guard vanishes leaves gaps open too.
 
         Args:
             plain: equations of the model.
-            piece: of its inputs.
-            phases: what touches.
-            at: the end of the step, with the forces of the contacts.
+            piece: piece of the inputs.
+            phases: the contacts.
+            at: the end of the step, with the contact forces.
         """
         size = plain.size
         inputs = piece.at(at.time)
@@ -149,15 +149,15 @@ class ExactContacts:
         *,
         jerked: bool = False,
     ) -> Restart[ContactPhase]:
-        """How a motion goes on, or begins.
+        """Restart a motion after an event, or start it.
 
         Args:
             plain: equations of the model.
-            piece: of its inputs.
+            piece: piece of the inputs.
             at: state before the event.
-            phases: what touches before it.
-            guard: number of the guard that came to zero; None for a start, or another piece of the inputs.
-            interval: time after it in which the inputs are smooth, s.
+            phases: the contacts before the event.
+            guard: index of the guard that came to zero; None at a start, or where another piece of the inputs starts.
+            interval: time after the event in which the inputs are smooth, s.
             jerked: whether a cable or a stop has changed the velocities at this instant.
         """
         size = self.model.size
@@ -175,13 +175,13 @@ class ExactContacts:
         return replace(restart, phases=counted)
 
     def _known(self, phases: ContactPhase, guard: int | None, before: Instant, inputs: FloatArray) -> _Known:
-        """The contacts after a guard came to zero, from the contacts before.
+        """Contacts after a guard has come to zero, before impacts are solved.
 
         Args:
-            phases: these contacts.
-            guard: number of the guard; None for a start, or another piece of the inputs.
+            phases: the contacts before the event.
+            guard: index of the guard; None at a start, or where another piece of the inputs starts.
             before: state before the event.
-            inputs: at its time.
+            inputs: inputs at the event.
         """
         places, _ = phases.follower.gaps(before.x, inputs)
         held = [touch._replace(place=place) for touch, place in zip(phases.touches, places, strict=True)]
@@ -201,21 +201,21 @@ class ExactContacts:
                 return known
 
     def _lifted_off(self, known: _Known, number: int, before: Instant) -> _Known:
-        """Contacts without one whose force would pull."""
+        """Contacts after one whose force would pull has lifted off."""
         held = list(known.held)
         left = held.pop(number)
         event = self._event("lift_off", before.time, left)
         return replace(known, held=tuple(held), left=(left,), events=(event,))
 
     def _come_to_end(self, known: _Known, number: int, element: int, before: Instant, inputs: FloatArray) -> _Known:
-        """Contacts of which one has come to an end of its rod or to another, or leaves an end: the rod may lie down.
+        """Contacts after one has slid to an end of its element or to another, or leaves an end; its rod may lie down.
 
-        One that comes to an end of its element goes on in the next one, where the gap has another bend.
+        A contact at the end of an inner element goes on in the next element, where the gap has another bend.
 
         Args:
             known: the contacts.
             number: number of the contact.
-            element: element that it slides in.
+            element: number of the element in which it slides.
             before: state before the event.
             inputs: inputs at the time of that state.
         """
@@ -251,7 +251,7 @@ class ExactContacts:
     def _without_bend(
         self, known: _Known, number: int, follower: Follower, before: Instant, inputs: FloatArray
     ) -> _Known:
-        """Contacts of which one has lost the bend of its gap: its rod lies down."""
+        """Contacts after the gap at one of them has become flat along the rod: the rod lies down."""
         held = list(known.held)
         places = [touch.place for touch in held]
         if follower.gone(before.x, inputs, places)[number]:
@@ -260,7 +260,7 @@ class ExactContacts:
         return self._lying(replace(known, held=tuple(held)), held[number], before, inputs)
 
     def _got_up(self, known: _Known, number: int, before: Instant, inputs: FloatArray) -> _Known:
-        """Contacts where a rod no longer lies: it rolls on from a section that touches, if the gap is least there."""
+        """Contacts after a lying rod has got up: it rolls on from a touching section if the gap is least there."""
         facing = self.facings[number]
         held = list(known.held)
         for k, touch in enumerate(held):
@@ -274,7 +274,7 @@ class ExactContacts:
     def _lying(
         self, known: _Known, first: MovingContact, before: Instant, inputs: FloatArray, kind: str = "lie_down"
     ) -> _Known:
-        """Contacts where a rod lies down: what slides on the obstacle stays at the section that touches now."""
+        """Contacts after a rod has lain down: its sliding contacts with the obstacle stay at their present sections."""
         facing = self.facings[first.facing]
         nodes = facing.nodes(before.x, inputs)
         held = []
@@ -287,14 +287,14 @@ class ExactContacts:
         return replace(known, held=tuple(held), laid=known.laid | {first.facing}, events=(*known.events, event))
 
     def _all_lie(self, known: _Known, before: Instant, inputs: FloatArray) -> _Known:
-        """Contacts that change over and over in next to no time: all rods that touch lie down, but no bodies."""
+        """Contacts after many changes within a moment: all touching rods lie down; bodies never do."""
         for touch in (*known.held, *known.left):
             if touch.facing not in known.laid and not self.facings[touch.facing].of_body:
                 known = self._lying(known, touch, before, inputs, LAID_DOWN)
         return known
 
     def _struck(self, onset: Onset, known: _Known, *, jerked: bool) -> Restart[ContactPhase]:
-        """How a motion goes on after what touches anew has struck, or what touches was jerked."""
+        """Restart after new contacts have struck, or after a cable or a stop has jerked the old ones."""
         x, inputs = onset.before.x, onset.inputs.value
         old = (*known.held, *known.left)
         touching, laid = self._touching(x, inputs, old, known.laid)
@@ -335,7 +335,7 @@ class ExactContacts:
         return Restart(after.start(pressing), arrangement, lost, work, tuple(events))
 
     def _impacts(self, onset: Onset, touching: Touches, struck: Struck, known: int) -> list[ContactEvent]:
-        """Impacts of the sections that touch anew, those behind the known ones."""
+        """Events of the impacts of new contacts, which follow the ``known`` first ones."""
         energies = self._energies(touching, struck)
         found = []
         for touch, impulse, energy in list(zip(touching, struck.impulses, energies, strict=True))[known:]:
@@ -345,7 +345,7 @@ class ExactContacts:
         return found
 
     def _energies(self, touching: Touches, struck: Struck) -> list[float]:
-        """Energy that the impulse at each section takes, J: half of it times the speeds before and after."""
+        """Energy lost by the impulse at each contact, J: half the impulse times the sum of the speeds around it."""
         energies = []
         for touch, impulse, speed in zip(touching, struck.impulses, struck.speeds, strict=True):
             unit = self.facings[touch.facing].energy_unit
@@ -354,7 +354,7 @@ class ExactContacts:
         return energies
 
     def _stopped(self, onset: Onset, known: _Known, touching: Touches) -> Restart[ContactPhase]:
-        """The end of a motion, with everything as it was, because nothing is decided."""
+        """End of a motion at which it stays undecided which contacts remain; the state is unchanged."""
         names = sorted({self.facings[touch.facing].touched for touch in touching})
         why = (
             f"At t = {onset.before.time:.6g} s it is not decided which of {len(touching)} contacts with "
@@ -363,7 +363,7 @@ class ExactContacts:
         return Restart(onset.start(()), ContactPhase(), events=known.events, stalled=why)
 
     def _on_sections(self, touches: Touches, laid: frozenset[int]) -> Touches:
-        """Contacts of rods that lie at their sections: a place between two sections is given up where one touches."""
+        """Contacts without those of lying rods between two holding sections of which one touches."""
         kept = []
         for touch in touches:
             at = self.facings[touch.facing].laid_at
@@ -379,7 +379,7 @@ class ExactContacts:
     def _floors(
         self, x: FloatArray, inputs: FloatArray, pressing: Touches, laid: frozenset[int]
     ) -> tuple[FloatArray, ...]:
-        """The least gaps that what does not touch may have from now on."""
+        """Least admissible gaps of everything that does not touch, an array for each pair."""
         floors = []
         for number, facing in enumerate(self.facings):
             nodes = facing.nodes(x, inputs)
@@ -391,7 +391,7 @@ class ExactContacts:
         return tuple(floors)
 
     def _slopes(self, x: FloatArray, inputs: FloatArray, pressing: Touches, laid: frozenset[int]) -> tuple[float, ...]:
-        """Slopes of the gaps where rods lie on one section each, and may roll on from there; zero of all others."""
+        """Slope of the gap of each pair at the only section on which a rod lies, if it may roll on there; else zero."""
         slopes = [0.0] * len(self.facings)
         for number in laid:
             places = [touch.place for touch in pressing if touch.facing == number]
@@ -409,7 +409,7 @@ class ExactContacts:
     def _touching(
         self, x: FloatArray, inputs: FloatArray, known: Sequence[MovingContact], laid: frozenset[int]
     ) -> tuple[Touches, frozenset[int]]:
-        """Known contacts, and all others that touch at a state; and which rods lie then."""
+        """Known contacts and all new ones at a state, and the pairs in which rods lie."""
         found: list[MovingContact] = []
         lying: list[MovingContact] = []
         for number, facing in enumerate(self.facings):
@@ -433,9 +433,9 @@ class ExactContacts:
         return (*still, *lying), laid
 
     def _is_one(self, number: int, nodes: FloatArray, place: float, other: float) -> bool:
-        """Whether two sections that touch count as one: they are close, and the gap does not rise between them.
+        """Whether two touching sections count as one contact: they are close, and the gap does not rise between them.
 
-        From an end that touches, the gap may rise and come to zero again close by: the rod strikes there, too.
+        The gap may rise from a touching end and vanish again close by: the rod strikes there, too.
         """
         distance = abs(place - other)
         if distance > SAME_PLACE:
@@ -456,11 +456,11 @@ class ExactContacts:
 
 @dataclass(frozen=True)
 class _Known:
-    """Contacts that there were before an event.
+    """Contacts at an event, before impacts are solved.
 
     Attributes:
-        held: contacts that go on, at their places at the event.
-        laid: numbers of the pairs of a rod and an obstacle in which the rod lies from now on.
+        held: contacts that persist, at their places at the event.
+        laid: indices of the pairs of a rod and an obstacle in which the rod lies from now on.
         left: the contact that lifts off, if one does.
         events: events of these contacts.
     """
@@ -472,5 +472,5 @@ class _Known:
 
 
 def _is_flat(gap: SectionGap) -> bool:
-    """Whether a rod lies along the obstacle about a section, within it or at its end, whose gap is the least."""
+    """Whether a rod lies along the obstacle at its section of least gap, which may be an end."""
     return gap.bend <= FLATTEST and abs(gap.slope) <= SMOOTH

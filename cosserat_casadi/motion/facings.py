@@ -1,4 +1,4 @@
-"""Everything in a motion that may touch exactly: rods and bodies with obstacles, and rods with rods."""
+"""Pairs that may touch exactly in a motion: a rod or a body with an obstacle, and a rod with a rod."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from cosserat_casadi.motion.rods_facing import RodsFacing
 
 
 def facings(model: Model, libraries: Libraries = INTERPRETED) -> list[Facing]:
-    """Every rod and every body with every obstacle, and with every other rod, that it may touch exactly.
+    """Make all pairs that may touch exactly: a rod or a body with an obstacle, and a rod with a rod.
 
     Args:
         model: the model, built for a motion.
-        libraries: shared objects that have the functions of :func:`touching_points`.
+        libraries: shared objects that contain the functions of :func:`touching_points`.
     """
     # Its functions are those of every motion of the model.
     kept: dict[Libraries, list[Facing]] = kept_with(model, "_facings", dict)
@@ -31,12 +31,12 @@ def facings(model: Model, libraries: Libraries = INTERPRETED) -> list[Facing]:
 
 
 def touching_points(model: Model, libraries: Libraries = INTERPRETED) -> list[MovingPoints]:
-    """Points of all rods and bodies that may touch; none in a scene without exact contact."""
+    """Points of all rods and bodies that may touch; an empty list without exact contact."""
     return points_of(facings(model, libraries))
 
 
 def points_of(pairs: Sequence[Facing]) -> list[MovingPoints]:
-    """Points of pairs that may touch, each once."""
+    """Points of the given pairs, each rod's or body's once."""
     return list(dict.fromkeys(facing.points for facing in pairs))
 
 

@@ -1,4 +1,4 @@
-"""How errors of motions with equal steps fall with the step, and what the paths of two or three motions tell."""
+"""Decrease of the errors of motions with the step size, and the error that the paths of two or three motions tell."""
 
 from __future__ import annotations
 
@@ -15,56 +15,56 @@ from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.tip_paths import Paths
 
 HALVED = 4.0 / 3.0
-"""Error of a motion over its distance to one of half the step: half a step leaves a quarter of the error."""
+"""Error of a motion over its distance from one with half the step, which has a quarter of the error."""
 
 LEFT_BY_HALF = 1.0 / 3.0
-"""Error of a motion over its distance to one of twice the step, which has four times the error."""
+"""Error of a motion over its distance from one with twice the step, which has four times the error."""
 
 HALVED_WHERE_RUBBING = 2.0
-"""Error of a motion with friction of exact contact over its distance to one of half the step.
+"""Error of a motion with friction of exact contact over its distance from one with half the step.
 
-What breaks loose or lifts off in a step may leave its first power; where nothing does it leaves the second one.
+The error is of first order where contacts break loose or lift off within a step, and of second order elsewhere.
 """
 
 HALVED_WHERE_STRUCK = 4.85
-"""Error over the same distance where impacts strike: errors are then taken to go with the cube root of the step.
+"""Error over that distance with impacts: errors are then taken to be proportional to the cube root of the step.
 
-Of 216 motions of 57 random rods (``benchmarks/thrown_rods.py``) none erred by more than was told, and one by 0.99 of
-it; with the root one erred by 1.6 times as much.
+Of 216 motions of 57 random rods (``benchmarks/thrown_rods.py``) none erred by more than its estimate, and one by 0.99
+of it; with the square root, one erred by 1.6 times its estimate.
 """
 
 UNBALANCED = 2.5
 """Least error of the paths of free rods with friction, over the largest imbalance of their energy.
 
-With twice the imbalance one of those rods erred by 1.2 times as much as was told, and with this by 0.96 of it; by the
-distances alone nine rods erred by more than was told, by up to 3.3 times as much.
+With a factor of 2, one of these rods erred by 1.2 times its estimate, with 2.5 by 0.96 of it; by the distances alone
+nine rods erred by more than their estimates, by up to 3.3 times as much.
 """
 
 TIMES_OF_ENERGY = 101
-"""Times at which the energy of a motion with friction is looked at."""
+"""Number of times at which the energy of a motion with friction is evaluated."""
 
 NOT_NEARER = 0.5
-"""Share of the distance of two motions from which on the next two, ten times as exact, count as no nearer."""
+"""Ratio of the distances of two motions, ten times as exact and before, above which they count as no nearer."""
 
 BLOWS_BESIDE_FRICTION = ("impact", "stop_hit", "taut")
-"""Kinds of events that are blows in steps with friction: of obstacles, of stops, and of cables."""
+"""Kinds of events that are blows in steps with friction: by obstacles, stops, and cables."""
 
 FAR_APART = 10.0
-"""Distance of two motions that count as no nearer, over the error allowed, from which on rounding decides them."""
+"""Distance of two motions that come no nearer, over the allowed error, above which rounding decides the motion."""
 
 
 class FallOfErrors(ABC):
-    """How the error of a motion with equal steps falls with the step.
+    """Model of the error of a motion with equal steps as a function of the step size.
 
     Attributes:
-        asks_a_third: whether impacts of two motions may happen to be alike, so that a third motion tells the error too.
+        asks_a_third: whether a third motion is needed, because the impacts of two may be alike by chance.
     """
 
     asks_a_third: ClassVar[bool]
 
     @abstractmethod
     def factor(self, history: History, other: History) -> float:
-        """Error of a motion over its distance to one of half the step, or of twice the step or more, from above."""
+        """Upper bound of a motion's error over its distance from one with half the step, or twice the step or more."""
 
     def error(self, history: History, paths: Paths, told: float, before: float) -> float:
         """Error of the paths of a motion, over the length.
@@ -72,25 +72,25 @@ class FallOfErrors(ABC):
         Args:
             history: the motion.
             paths: its paths.
-            told: error that the distance to another motion tells.
-            before: error that the distance of the other motion to a third one tells; nan where there is none.
+            told: error by the distance from another motion.
+            before: error by the distance of the other motion from a third one; nan without a third one.
         """
         by_others = np.maximum(told, before) if self.asks_a_third and _has_blows(history) else told
         return float(np.maximum(by_others, self.least(history, paths)))
 
     @abstractmethod
     def least(self, history: History, paths: Paths) -> float:
-        """Least error of the paths of a motion, over the length, however near other motions are."""
+        """Lower bound of the error of the paths of a motion, over the length, however near other motions are."""
 
 
 @final
 class SmoothFall(FallOfErrors):
-    """Errors without friction of exact contact: they fall with the square of the step."""
+    """Errors without friction of exact contact, which are proportional to the square of the step."""
 
     asks_a_third = False
 
     def factor(self, history: History, other: History) -> float:
-        """A third of the distance to a motion of twice the step, four thirds of that to one of half the step."""
+        """One third for a motion with twice the step, four thirds for a motion with half the step."""
         return LEFT_BY_HALF if is_finer(history, other) else HALVED
 
     def least(self, history: History, paths: Paths) -> float:
@@ -101,11 +101,11 @@ class SmoothFall(FallOfErrors):
 @final
 @dataclass(frozen=True)
 class RubbingFall(FallOfErrors):
-    """Errors with friction of exact contact: they fall with the step, after impacts with its cube root.
+    """Errors with friction of exact contact: proportional to the step, after impacts to its cube root.
 
     Attributes:
         model: the model.
-        begun: checkpoint at which the motion begins; None for its start.
+        begun: checkpoint at which the motion begins; None for a motion from its start.
     """
 
     model: Model
@@ -114,18 +114,18 @@ class RubbingFall(FallOfErrors):
     asks_a_third = True
 
     def factor(self, history: History, other: History) -> float:
-        """The factor by the power of the step that the coarser motion errs with."""
+        """Factor by the power of the step with which the error of the coarser motion falls."""
         finer = is_finer(history, other)
         are_struck = _has_blows(history if finer else other)
         return (HALVED_WHERE_STRUCK if are_struck else HALVED_WHERE_RUBBING) - finer
 
     def least(self, history: History, paths: Paths) -> float:
-        """Error of the paths of free rods by the imbalance of their energy.
+        """Lower bound of the error of the paths of free rods, by the imbalance of their energy.
 
-        Where a rod rolls out flat, its place of contact runs along it within a step. Such a step may lose energy, and
-        two motions that lose alike are near each other and far from the true motion: the missing energy tells the
-        error. A rod that is held comes back, whatever energy its waves have lost. The error is no more than the
-        longest way of the paths: the energy of rods at rest is rounding.
+        Where a rod rolls out flat, its contact runs along it within a step. Such a step may lose energy, and two
+        motions that lose equal energy are near each other but far from the true motion; the missing energy reveals
+        that error. A held rod returns whatever energy its waves have lost. The bound never exceeds the longest way of
+        the paths, because the energy of rods at rest is rounding.
         """
         if not any(rod.base.free for rod in self.model.scene.rods):
             return 0.0
@@ -144,15 +144,15 @@ def is_finer(history: History, other: History) -> bool:
 
 
 def hangs_on_rounding(history: History, distance: float, before: float, tolerance: float) -> bool:
-    """Whether impacts make a motion erratic: more exact steps do not bring its paths nearer to a limit.
+    """Whether impacts make a motion erratic: its paths do not converge with more exact steps.
 
-    Errors that go with LEAST_SLOPE or faster fall to a half from one distance to the next.
+    Errors that fall with the order LEAST_SLOPE or faster at least halve from one distance to the next.
 
     Args:
         history: the motion.
-        distance: between the paths of two motions, over the length, of which one has steps TIGHTER times as exact.
-        before: between the paths of two motions TIGHTER times as coarse; infinite where it is not known.
-        tolerance: error of the paths allowed, over the length.
+        distance: distance of the paths of two motions, over the length; one has steps TIGHTER times as exact.
+        before: distance of the paths of two motions TIGHTER times as coarse; infinite if unknown.
+        tolerance: allowed error of the paths, over the length.
     """
     return is_struck(history) and distance > max(NOT_NEARER * before, FAR_APART * tolerance)
 

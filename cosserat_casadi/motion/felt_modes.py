@@ -1,7 +1,7 @@
-"""How much the coefficients of strains move a rod along a motion, and what further ones would, by a power law.
+"""Displacements of a rod by the strain coordinates of each degree along a motion, and by missing ones, by a power law.
 
-Errors of a motion fall with a power p of its modes. So of a strain on m modes the further coefficients together move
-m/p times what its last one moves. See docs/theory.md, section 11.
+Errors of a motion fall with a power p of its number of modes. So all further coefficients of a strain with m modes
+together move a rod by m/p times the displacement by the last one. See docs/theory.md, section 11.
 """
 
 from __future__ import annotations
@@ -26,70 +26,70 @@ from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.scene import Body, Scene
 
 UNKNOWN_ORDER = 1.7
-"""Power of the modes with which errors fall, before two distances tell."""
+"""Power of the number of modes with which errors fall, before two distances determine it."""
 
 ORDER_OF_WAVES = 2.3
-"""Power with which errors fall by waves of all lengths, of a sudden load or a blow, that no damping takes."""
+"""Power with which errors by undamped waves of all lengths fall, after a sudden load or a blow."""
 
 SAFETY = 1.5
-"""Factor on the error that is extrapolated from a power."""
+"""Safety factor on the error that is extrapolated by a power."""
 
 REST = SAFETY / UNKNOWN_ORDER
-"""Displacement by all further coefficients over that by the last one and their number."""
+"""Displacement by all further coefficients, over the one by the last coefficient times their number."""
 
 LAST = 3
-"""Number of coefficients of which one counts as one of the last."""
+"""One coefficient in so many counts as one of the last."""
 
 AT_FRONT = 0.6
-"""Displacement that is missing where a front arrives, over that by the last of many coefficients and their number.
+"""Missing displacement where a front arrives, over the displacement by the last coefficient times their number.
 
-A strain that jumps by J leaves 0.6 J / n at the tip on n coefficients, and its n-th coefficient moves 0.3 J / n², or up
-to three times as much once waves are dispersed. On few coefficients the share is larger by 2 / n. From above for the
-rods of tests/motion/test_wave_estimates.py.
+A strain that jumps by J errs by 0.6 J / n at the tip on n coefficients; its n-th one moves the tip by 0.3 J / n², or up
+to three times as much once waves are dispersed. On few coefficients the ratio is larger by the factor 1 + 2 / n. It is
+an upper bound for the rods of tests/motion/test_wave_estimates.py.
 """
 
 LAST_AT_FRONT = 4
-"""Most coefficients, and half of all at most, that count as the last ones there: by the root of their mean square."""
+"""Most coefficients that count as the last ones at fronts, by the root of their mean square; at most half of all."""
 
 ANGLES = np.pi * np.arange(1, 40) / 40.0
-"""Angles θ of the sections at which an element is asked for its impedance."""
+"""Angles θ of the sections of an element at which its impedance is evaluated."""
 
 TWIST = 2
-"""Number of the torsion."""
+"""Index of the torsion among the strains."""
 
 STRETCH = 5
-"""Number of the extension."""
+"""Index of the extension among the strains."""
 
 BENDING = (0, 1)
-"""Numbers of the curvatures: they move places by two integrals, so that their fronts make no kinks."""
+"""Indices of the curvatures. Positions are their second integrals, so that their fronts make no kinks."""
 
 ROUNDING = 1e-12
-"""Lever over the length that is put down to rounding."""
+"""Lever arm, over the length, that counts as rounding."""
 
 TINY = float(np.finfo(float).tiny)
-"""Keeps the share of no acceleration finite."""
+"""Addend that keeps the ratio of zero accelerations finite."""
 
 
 ByStrain = dict[str, list[FloatArray]]
-"""A number for the coefficients of each degree, of every rod and each of its strains."""
+"""Numbers by degree of the coefficients, for each admitted strain of each rod, by the name of the rod."""
 
 
 def told_by_modes(modes: int, others: int, order: float) -> float:
-    """Error of a motion over its distance from one on other modes, from above, if errors go as modes^−order.
+    """Upper bound of the error of a motion over its distance from one on other modes, for errors ~ modes^−order.
 
-    The motion on other modes has (modes / others)^order times the error of the motion.
+    The motion on other modes then has (modes / others)^order times the error of the motion.
     """
     others_error: float = (modes / others) ** order
     return SAFETY / abs(1.0 - others_error)
 
 
 def most_modes(chosen: Mapping[str, Discretisation]) -> int:
-    """Most polynomials of a strain in an element, of all rods."""
+    """Largest number of polynomials of a strain in an element, of all rods."""
     return max(max(discretisation.modes) for discretisation in chosen.values())
 
 
 def felt(history: History, duration: float) -> ByStrain:
-    """Largest displacement over the length by the coefficients of each degree, of every strain of every rod."""
+    """Largest displacement along a motion by the coefficients of each degree of each strain, over the length."""
 
     def moved() -> ByStrain:
         states = watched_states(history, duration)
@@ -99,9 +99,9 @@ def felt(history: History, duration: float) -> ByStrain:
 
 
 def _by_strain(model: Model, sizes: FloatArray) -> ByStrain:
-    """Largest entries of all elements, of displacements by each unknown over its rod's length, shape (model.size,).
+    """Sort displacements by each unknown, over the rod's length, shape (model.size,), by strain; elements' maxima.
 
-    They are multiplied by the factors of :func:`_factors`.
+    The displacements are multiplied by the factors of :func:`_factors`.
     """
     factors = kept_with(
         model, "_factors_of_strains", lambda: {name: _factors(model, name) for name in model.discrete.rods}
@@ -117,10 +117,10 @@ def _by_strain(model: Model, sizes: FloatArray) -> ByStrain:
 
 
 def _factors(model: Model, name: str) -> list[float]:
-    """Factor on a displacement by each strain of a rod, over its length, for the displacement of what goes along.
+    """Ratio of the displacement of everything that goes along with a rod to that of the rod, by strain.
 
-    It is over the length of the shortest rod that goes along: its path is watched over its own length. A twist moves
-    what goes along by its distance from the axis.
+    It is relative to the length of the shortest rod that goes along, as each path is watched over its own rod's length.
+    A twist moves everything that goes along in proportion to its distance from the axis.
     """
     rod = model.discrete.rods[name]
     inputs = model.pack()
@@ -137,7 +137,7 @@ class MovedAlong(NamedTuple):
 
 
 def moved_along(scene: Scene, rod: str) -> MovedAlong:
-    """Rods and bodies that a strain of a rod moves: the rod, rods that start on it, what joints tie to these."""
+    """Find the rods and bodies that a strain of a rod moves: the rod, rods that start on it, all joined to these."""
     moved: set[tuple[str, str]] = {("rod", rod)}
     ties = []
     for joint in scene.joints:
@@ -153,10 +153,10 @@ def moved_along(scene: Scene, rod: str) -> MovedAlong:
 
 
 def arm_of_twist(model: Model, name: str) -> float:
-    """Arm, over lengths of watched rods, at which a twist of a rod counts: at least LEVER.
+    """Lever arm, over lengths of watched rods, with which the twist of a rod counts; at least LEVER.
 
-    It is the largest distance from the axis of the unloaded rod, from its tangents where it is curved, of the other
-    rods and of the points of bodies that go along.
+    It is the largest distance of the other rods, and of points of bodies, that go along from the axis of the unloaded
+    rod; for a curved rod, from its tangents.
     """
     moved = moved_along(model.scene, name)
     if moved == MovedAlong({name}, set()):
@@ -181,14 +181,14 @@ def arm_of_twist(model: Model, name: str) -> float:
 
 
 def _along_axis(model: Model, name: str, other: str) -> float:
-    """Largest cosine between tangents of two unloaded rods, without sign."""
+    """Largest absolute cosine of the angle between tangents of two unloaded rods."""
     first, second = (_unloaded_axis(model, rod)[1] for rod in (name, other))
     sizes = np.outer(np.linalg.norm(first, axis=1), np.linalg.norm(second, axis=1))
     return float(np.max(np.abs(first @ second.T) / sizes))
 
 
 def _unloaded_axis(model: Model, name: str) -> tuple[FloatArray, FloatArray]:
-    """Positions and tangents, not of unit length, of an unloaded rod at its nodes, world axes, m, shape (nodes, 3)."""
+    """Positions and tangents r' of an unloaded rod at its nodes, world axes, m, shape (nodes, 3) each."""
     base = model.discrete.own_unloaded.base(name)
     rod = model.discrete.rods[name]
     own = shape(rod, ca.DM.zeros(rod.size))
@@ -197,12 +197,12 @@ def _unloaded_axis(model: Model, name: str) -> tuple[FloatArray, FloatArray]:
 
 
 def last_of(moved: FloatArray) -> float:
-    """Largest displacement by the last coefficients of a strain, of those by all; one alone may vanish by symmetry."""
+    """Largest displacement by the last coefficients of a strain; at least two count, as one may vanish by symmetry."""
     return float(moved[-max(2, len(moved) // LAST) :].max())
 
 
 def lacking(history: History, duration: float) -> float:
-    """Largest displacement over the length that coefficients would make which a strain of a motion lacks.
+    """Estimate of the largest displacement along a motion by the missing coefficients of a strain, over the length.
 
     Args:
         history: the motion.
@@ -217,9 +217,9 @@ def lacking(history: History, duration: float) -> float:
 
 
 def lacking_at_fronts(history: History, duration: float) -> float:
-    """Largest displacement over the length that a wave with a front would make which coefficients lack.
+    """Estimate of the displacement that is missing where a wave with a front arrives, over the length.
 
-    What a front lacks from all rods that it comes through adds up, as errors at different times do: in squares.
+    The errors in all rods that a front passes add up in squares, as errors at different times do.
     """
     by_rod = at_fronts(history, duration)
     squares = dict.fromkeys(by_rod, 0.0)
@@ -230,11 +230,11 @@ def lacking_at_fronts(history: History, duration: float) -> float:
 
 
 def at_fronts(history: History, duration: float) -> dict[str, list[float]]:
-    """Displacement that is missing at fronts, by rod and strain; zero for curvatures, whose fronts make no kinks.
+    """Missing displacement at fronts, by rod and strain; zero for curvatures, whose fronts make no kinks.
 
-    A sudden load sends fronts along a rod by its twist, its stretch and its shear. Where one arrives at the tip, turn
-    or place has a kink, which any polynomials meet with the first power of their number: what two motions differ by
-    there says little, for their kinks err at different times.
+    A sudden load sends fronts of twist, stretch and shear along a rod. When a front arrives at the tip, its rotation
+    or position has a kink, where polynomials converge with the first power of their number. The distance of two
+    motions says little there, because their kinks err at different times.
     """
     return history.once("fronts", duration, lambda: _at_fronts(history.model, felt(history, duration)))
 
@@ -256,7 +256,7 @@ def _at_fronts(model: Model, moved_by: ByStrain) -> dict[str, list[float]]:
 
 
 def _fronts_over_seen(model: Model, name: str) -> dict[int, float]:
-    """:func:`front_over_seen` by strain, for strains whose fronts make kinks; every level of a search asks."""
+    """:func:`front_over_seen` by strain, for strains whose fronts make kinks; kept with the model."""
     fronts: dict[str, dict[int, float]] = kept_with(model, "_fronts_over_seen", dict)
     if name not in fronts:
         strains = [strain for strain in model.discrete.rods[name].admitted if strain not in BENDING]
@@ -265,22 +265,22 @@ def _fronts_over_seen(model: Model, name: str) -> dict[int, float]:
 
 
 def front_over_seen(model: Model, name: str, strain: int) -> float:
-    """Displacement that a front lacks where a rod is watched, over the one that coefficients tell; 1 of a uniform rod.
+    """Missing displacement of a front at watched sections, over the one that coefficients tell; 1 for a uniform rod.
 
-    A front keeps its power, so that it moves sections with a velocity that goes as Z^−1/2, of the impedance
-    Z = √(stiffness · inertia per length): most where the rod is thin. Polynomials meet it late, by the time in which it
-    passes some share of an element. The displacement by this delay at a watched section is compared with the one at
-    the place that coefficients see best. At the place X = (1 − cos θ)/2 of an element they see a step times √(sin θ),
-    the size of Legendre's polynomials there: near a thin tip they see little of it.
+    A front keeps its power, so that it moves sections with a velocity proportional to Z^−1/2, with the impedance
+    Z = √(stiffness · inertia per length): most where the rod is thin. Polynomials follow it late, by the time in which
+    it passes a fixed share of an element. The displacement by this delay at a watched section is compared with the
+    one at the place that coefficients resolve best. At X = (1 − cos θ)/2 of an element a step acts on them with the
+    factor √(sin θ), the size of Legendre polynomials there: near a thin tip they show little of it.
 
-    Where the watched sections are thicker than others, the root of the change is believed: on few modes fronts are
-    blurred, and grow less on their way to thin sections. Rods that the rod moves along are watched too; into one at an
-    angle a twist goes by its share about that rod's axis.
+    If the watched sections are thicker than others, the square root of the ratio is taken: on few modes fronts are
+    blurred, and grow less on their way to thin sections. Rods that go along are watched too; a twist enters a rod at
+    an angle by its component about the axis of that rod.
 
     Args:
         model: the model.
-        name: of the rod.
-        strain: number of the twist, the stretch or a shear.
+        name: name of the rod.
+        strain: index of the twist, the stretch or a shear.
     """
     rod = model.discrete.rods[name]
     ends = np.array(rod.grid.known_places)
@@ -307,7 +307,7 @@ def front_over_seen(model: Model, name: str, strain: int) -> float:
 
 
 def _let_through(model: Model, name: str) -> list[float]:
-    """:func:`let_through_at_tip` for all strains of a rod; every level of a search asks."""
+    """:func:`let_through_at_tip` for all strains of a rod; kept with the model."""
     known_of: dict[str, list[float]] = kept_with(model, "_let_through_at_tips", dict)
     if name not in known_of:
         known_of[name] = [let_through_at_tip(model, name, strain) for strain in model.discrete.rods[name].admitted]
@@ -315,7 +315,7 @@ def _let_through(model: Model, name: str) -> list[float]:
 
 
 def let_through_at_tip(model: Model, name: str, strain: int) -> float:
-    """Motion of a tip with a body over motion of a free tip, by waves that coefficients of a strain lack.
+    """Amplitude of a tip with a body over that of a free tip, for waves that the coefficients of a strain lack.
 
     A body of mass m ends a rod of impedance Z: by a wave of frequency ω it moves 1/√(1 + (ω m / Z)²) times as much as
     a free tip. The waves that n coefficients of an element lack have frequencies above n / T, with the time T in which
@@ -323,12 +323,12 @@ def let_through_at_tip(model: Model, name: str, strain: int) -> float:
     moment of inertia. For waves of bending ω m / Z is k m / ρA, with the wave number k ≥ n / ℓ; but the body turns by
     them: its points on a radius of gyration move by up to the root of that share.
 
-    It is 1 where anything else goes along with the rod, and where sections before its tip are watched.
+    The ratio is 1 if anything else goes along with the rod, or if sections before its tip are watched.
 
     Args:
         model: the model.
-        name: of the rod.
-        strain: its number.
+        name: name of the rod.
+        strain: index of the strain.
     """
     scene, discrete = model.scene, model.discrete
     riding = discrete.unloaded.riding
@@ -359,15 +359,15 @@ def let_through_at_tip(model: Model, name: str, strain: int) -> float:
 
 
 def _inertia_at_tip(model: Model, name: str, body: Body, strain: int) -> float:
-    """Moment along a tip on a body over its angular acceleration, kg m²; or force over the acceleration there, kg.
+    """Inertia of a body felt at a tip: moment over angular acceleration, kg m², or force over acceleration, kg.
 
-    The body is free to turn, so that it gives way as much as it can: 0 where it has no inertia against that.
+    The body is free to rotate, so that it yields as much as it can; 0 if it has no inertia against the rotation.
 
     Args:
         model: the model.
-        name: of the rod at whose tip it is.
+        name: name of the rod whose tip carries the body.
         body: the body.
-        strain: number of the twist, for the moment, of the stretch, or of a shear.
+        strain: index of the twist, for a moment, or of the stretch or a shear, for a force.
     """
     start = model.discrete.own_unloaded.body_frame(body.name).start
     tip, tangent = (vectors[-1] for vectors in _unloaded_axis(model, name))
@@ -391,7 +391,7 @@ def _inertia_at_tip(model: Model, name: str, body: Body, strain: int) -> float:
 
 
 def _along(properties: RodProperties, strain: int, X: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Stiffness and inertia per length of a twist, a stretch or a shear at abscissae X, shape (k,) each."""
+    """Stiffness and inertia per length against a twist, a stretch or a shear at abscissae X, shape (k,) each."""
     stiffness = np.broadcast_to(known(properties.hooke(X)), (len(X), 6))[:, strain]
     if strain == TWIST and properties.rotary_inertia is not None:
         return stiffness, np.broadcast_to(known(properties.rotary_inertia(X)), (len(X), 3))[:, strain]
@@ -401,15 +401,15 @@ def _along(properties: RodProperties, strain: int, X: FloatArray) -> tuple[Float
 
 
 def out_of_phase(history: History, duration: float, moved_by: ByStrain) -> float:
-    """Largest displacement over the length by which waves come too early or too late, for the modes that they lack.
+    """Estimate of the largest displacement by waves that come too early or too late for want of modes, over the length.
 
-    A frequency errs by half the square of the share of its mode that coefficients lack. So the way of the last
-    coefficients, times half of their share, bounds the displacement by which a wave is late in the end. Accelerations
-    tell their share of the shortest waves, which long and larger ones would hide.
+    A frequency errs by half the square of the missing share of its mode shape. So the path length of the last
+    coefficients, times half of their share, bounds the displacement by which a wave is late at the end. The share is
+    taken from accelerations, in which short waves are not hidden by long and larger ones.
 
-    No wave errs by more than twice its displacement, l / s if l is that by its last coefficient and s their share. So
-    it is late by no more than min(2 l / s, s Θ l / 2) after the phase Θ, which is at most √Θ l for any share. The way
-    of the last coefficient is 2 Θ l / π.
+    No wave errs by more than twice its displacement l / s, if l is the displacement by its last coefficient and s the
+    share of this one. So it errs by no more than min(2 l / s, s Θ l / 2) after the phase Θ, which is at most √Θ l for
+    any share. The path length of the last coefficient is 2 Θ l / π.
 
     Args:
         history: the motion.

@@ -1,4 +1,4 @@
-"""A motion that goes on from the end of another, with the very digits of one motion over all of the time.
+"""Continuation of a motion from the end of another, digit for digit equal to one motion over the whole time.
 
 The motions that told the error of the first part go on beside it, so that they tell the error of the whole. Modes stay
 as they were, and so do steps; equal steps that do not meet the tolerance further on are halved from there.
@@ -54,17 +54,17 @@ from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.simulation import Simulation
 
 StartOfMotion = Solution | Motion | Checkpoint | str | Path | None
-"""The start of a motion: an equilibrium, or a motion or its file, which goes on."""
+"""The start of a motion: an equilibrium, or a motion that is continued, as a result, a checkpoint or a file."""
 
 AGREEMENT = 1e-6
-"""Distance of tips, over the length, up to which a scene has the state of a checkpoint."""
+"""Largest distance of tips, over the length, at which a checkpoint counts as a state of a scene."""
 
 
 def checkpoint_of(start: StartOfMotion) -> Checkpoint | None:
-    """Where a motion goes on from; None where it begins at rest.
+    """Return the checkpoint from which a motion continues; None if it begins at rest.
 
     Raises:
-        SceneError: the motion or the file holds no state to go on from.
+        SceneError: the motion or the file contains no state from which it can continue.
     """
     if isinstance(start, str | Path):
         found = read_checkpoint(start)
@@ -87,15 +87,15 @@ def go_on(
     source: MotionCompiler | None,
     events: Sequence[MotionEvent] = (),
 ) -> Motion:
-    """The motion of a scene from a checkpoint to its duration.
+    """Continue the motion of a scene from a checkpoint to its duration.
 
     Args:
         subject: the scene, or a model of it on the modes of the checkpoint.
-        checkpoint: where the motion goes on from.
-        simulation: duration, frames, tolerance; None for the scene's.
-        tell: is told of every step.
-        source: chooses the kernels.
-        events: of the user.
+        checkpoint: state from which the motion continues.
+        simulation: duration, frames, tolerance; None for the settings of the scene.
+        tell: callback after every step.
+        source: selector of the kernels.
+        events: events of the user.
 
     Raises:
         SceneError: the scene does not have the state of the checkpoint, or its duration does not reach beyond it.
@@ -177,14 +177,14 @@ def _along(simulator: Simulator, strands: Sequence[Strand], *, of_model: bool) -
 
 
 def _later_factor(simulator: Simulator, strand: Strand, history: History, told: History, *, has_jumps: bool) -> float:
-    """Error of a motion over its distance from another one, from above, by what happened as they went on.
+    """Upper bound of the error of a motion over its distance from another one, revised by the continuation.
 
     Args:
         simulator: the simulator of the motion.
-        strand: the strand of the other one.
+        strand: the strand of the other motion.
         history: the motion.
-        told: the other one.
-        has_jumps: whether inputs jumped in a scene that is not damped.
+        told: the other motion.
+        has_jumps: whether inputs jumped in an undamped scene.
     """
     modes = most_modes(history.model.discretisation)
     others = most_modes(strand.discretisation)
@@ -208,10 +208,10 @@ def _moving(subject: Scene | Model, simulation: Simulation | None) -> Scene:
 
 
 def _model_of(scene: Scene, given: Model | None, strand: Strand, checkpoint: Checkpoint) -> Model:
-    """The model of the first strand, whose tips are where those of the checkpoint are.
+    """Make the model of the first strand, and check that its tips are where they are in the checkpoint.
 
     Raises:
-        SceneError: the scene does not have its state.
+        SceneError: the scene does not have the state of the checkpoint.
     """
     model = _model_of_strand(scene, given, strand)
     at = strand.resume.at
@@ -227,7 +227,7 @@ def _model_of(scene: Scene, given: Model | None, strand: Strand, checkpoint: Che
 
 
 def _model_of_strand(scene: Scene, given: Model | None, strand: Strand) -> Model:
-    """The model of a strand, with as many unknowns as its state has.
+    """Make the model of a strand, and check that its state has as many unknowns.
 
     Raises:
         SceneError: the scene does not have its state.

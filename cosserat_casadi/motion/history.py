@@ -1,4 +1,4 @@
-"""A model integrated in time: its equations over each smooth piece of its inputs, and the steps one after the other."""
+"""Integration of a model in time: its equations over each smooth piece of its inputs, and the sequence of steps."""
 
 from __future__ import annotations
 
@@ -46,46 +46,46 @@ from cosserat_casadi.numerics.time_steps import integrate
 Known = TypeVar("Known")
 
 DIFFERENTIATED = 0.01
-"""Share of a piece in which constraints are differentiated to find the multipliers that it begins with."""
+"""Interval of the finite difference of constraints for the multipliers at the start of a piece, over its duration."""
 
 DRIFTING = 1e-2
-"""Share of a piece of the inputs below which steps of what flies free are solved more exactly, the shorter they are.
+"""Step, over the piece of the inputs, below which steps of free rods are solved more exactly, the shorter they are.
 
-A rod that was kicked drifted about its axis by ten tolerances of a step, at a speed that the first steps had left it.
+A kicked rod drifted about its axis by ten tolerances of a step, at a speed that errors of the first steps had caused.
 """
 
 LASTING = 1e-3
-"""Share of the time between two events over which errors of shorter steps act while a rod touches.
+"""Share of the time between two events over which velocity errors of shorter steps act while a rod touches.
 
-A rod that rolls onto its end does so in microseconds: steps that are exact in its positions only were wrong by a
-hundredth in the velocities that it leaves with.
+A rod rolls onto its end in microseconds: steps that are exact in positions alone left it with velocities that were
+wrong by a hundredth.
 """
 
 MOST_AT_ONCE = 60
-"""Changes between slack and taut, or of contact, in next to no time from which on they count as without end."""
+"""Changes between slack and taut, or of contact, within AT_ONCE above which they count as endless."""
 
 SHORTER = 0.25
-"""Factor of a step after one in which a cable changed where the step began."""
+"""Factor on a step size after a step in which a cable changed at the very start of the step."""
 
 AT_ONCE = 1e-6
-"""Time, over the duration, that counts as next to no time for changes."""
+"""Time, over the duration, within which changes count as simultaneous."""
 
 CLOSED_AT_ONCE = 256
-"""Rows whose constraints are closed together: each has a matrix in memory."""
+"""Number of times whose constraints are closed together; each needs a matrix in memory."""
 
 AT_REST = 'let it start at rest: wave = "one_minus_cosine", or a table with interpolation = "cubic"'
-"""The remedy where nothing can follow an input that has a speed."""
+"""Remedy for an input that starts with a speed which the rods cannot follow."""
 
 
 def equations_of(
     model: Model, piece: Piece, p: FloatArray | None = None, kernels: StepKernels | None = None
 ) -> MotionEquations:
-    """The equations of motion of a model while its inputs follow one piece of their paths.
+    """Make the equations of motion of a model while its inputs follow one smooth piece of their paths.
 
     Args:
         model: the model.
-        piece: piece of its inputs.
-        p: stacked parameters of a model that has some; else None.
+        piece: piece of the inputs.
+        p: stacked parameters; None for a model without parameters.
         kernels: inverse dynamics and its derivatives; by default in CasADi's virtual machine.
     """
     kernels = kernels or interpreted(model)
@@ -119,24 +119,24 @@ def equations_of(
 
 
 class Stops(Protocol):
-    """Numbered values at whose zeros a motion stops."""
+    """Values, referred to by number, at whose zeros a motion stops."""
 
     def guards(self, piece: Piece, begin: Instant) -> Guards | None:
-        """The values, positive from the begin on; None for none."""
+        """Make guards of the values, with signs that are positive at the start; None if there are no values."""
 
     def jumped(self, before: Piece, piece: Piece, at: Instant) -> int | None:
-        """Number of a value that jumps through zero with the inputs, between two pieces; None for none."""
+        """Number of a value that jumps through zero with the inputs between two pieces; None if none does."""
 
 
 @dataclass(frozen=True)
 class Leg:
-    """The steps over one piece, or over a part of it in which cables, stops and contacts do not change.
+    """The steps over a piece of the inputs, or over a part of it in which cables, stops and contacts do not change.
 
     Attributes:
         piece: the inputs.
-        integration: the steps; beside the unknowns of the model they have the forces of contacts.
-        restart: the change at the beginning of the leg, and the phases in it.
-        equations: of motion of the model, without what makes cables slack or contacts push; None in a copy by pickle.
+        integration: the steps, with contact forces appended to the unknowns of the model.
+        restart: the change at the start of the leg, and the phases in it.
+        equations: equations of motion before cables and contacts are added; None in a pickled copy.
     """
 
     piece: Piece
@@ -155,7 +155,7 @@ class Leg:
 
     @property
     def lost(self) -> float:
-        """Energy that an impact has taken where it begins, J."""
+        """Energy lost in an impact at the start of the leg, J."""
         return self.restart.lost
 
 
@@ -165,12 +165,12 @@ class History:
 
     Attributes:
         model: the model.
-        legs: one for each piece that was begun, and one more for each time at which a cable becomes slack or taut, a
-            joint hits a stop or leaves it, or contact changes.
-        method: of its steps.
-        settings: how it steps.
-        flight: coordinates of the steps, and what keeps their momentum.
-        stopped: number of the value that stopped the motion; None for one that was not stopped.
+        legs: one leg for each piece that was begun, and one more for each time at which a cable becomes slack or taut,
+            a joint hits a stop or leaves it, or contact changes.
+        method: collocation method of the steps.
+        settings: settings of the steps.
+        flight: coordinates of the steps, and the correction of their momentum.
+        stopped: number of the value that stopped the motion; None if it was not stopped.
         carried: data that a next step takes over; None without friction of exact contact.
     """
 
@@ -188,12 +188,12 @@ class History:
 
     @property
     def begin(self) -> float:
-        """Time at which it begins, s: zero, unless it goes on from another."""
+        """Time at which the motion begins, s: zero, unless it continues another one."""
         return self.legs[0].start.instant.time
 
     @property
     def resume(self) -> Resume:
-        """Where the motion would go on."""
+        """The state from which the motion would continue."""
         leg = self.legs[-1]
         ended = leg.integration
         phases = leg.restart.phases
@@ -207,7 +207,7 @@ class History:
 
     @property
     def outcome(self) -> StepOutcome:
-        """How the last piece ended."""
+        """Outcome of the last piece."""
         return self.legs[-1].integration.outcome
 
     @property
@@ -217,22 +217,22 @@ class History:
 
     @property
     def end(self) -> Instant:
-        """The last instant that was reached."""
+        """The last instant of the motion."""
         return self.of_model(self.legs[-1].integration.end)
 
     @property
     def next_size(self) -> float:
-        """Size of the step that would come next, or that failed, s."""
+        """Size of the next step, or of the step that failed, s."""
         return self.legs[-1].integration.next_size
 
     @cached_property
     def steps(self) -> list[tuple[Leg, TimeStep]]:
-        """All steps in their order, with the pieces that they belong to."""
+        """All steps in order of time, with their legs."""
         return [(leg, step) for leg in self.legs for step in leg.integration.steps]
 
     @property
     def rows(self) -> list[StepRows]:
-        """The steps of each leg that has some, as arrays."""
+        """The steps of each leg, as arrays, without legs that have no steps."""
         return [StepRows.of(leg.integration.steps) for leg in self.legs if leg.integration.steps]
 
     @cached_property
@@ -250,12 +250,12 @@ class History:
         )
 
     def at(self, time: float) -> MotionState:
-        """The state at a time that was reached, by the dense output of the steps; at a jump, before it."""
+        """State at a time within the motion, by the dense output of the steps; at a jump, the state before it."""
         states = self.states(np.array([time]))
         return MotionState(states.x[0], states.v[0], states.a[0], states.inputs[0])
 
     def states(self, times: FloatArray) -> MotionState:
-        """The states at T times that were reached, as :meth:`at`, a row for each time."""
+        """States at T times within the motion, as by :meth:`at`, a row for each time."""
         x, v, a = np.empty((3, len(times), self.model.size))
         inputs = np.empty((len(times), self.model.inputs.size))
         for leg, rows, held in self._held(times):
@@ -276,7 +276,7 @@ class History:
         return MotionState(x, v, a, inputs)
 
     def locate(self, time: float) -> tuple[Leg, Instant]:
-        """The motion at a time that was reached, and the piece that it belongs to; at a jump, the one before it."""
+        """Instant at a time within the motion, with the leg that contains it; at a jump, the leg before it."""
         if not self.end_times:
             leg = self.legs[0]
             return leg, self.of_model(leg.start.instant)
@@ -284,7 +284,7 @@ class History:
         return leg, self.of_model(step.at(time))
 
     def touching(self, time: float) -> tuple[MotionContact, ...]:
-        """The contacts at a time that was reached; none in a scene without exact contact."""
+        """Contacts at a time within the motion; none in a scene without exact contact."""
         if self.contacts is None or not self.end_times:
             return ()
         number = self.number_at(time)
@@ -295,7 +295,7 @@ class History:
 
     @property
     def lost(self) -> float:
-        """Energy that its impacts took, J."""
+        """Energy lost in all impacts, J."""
         return sum(leg.lost for leg in self.legs)
 
     @property
@@ -304,7 +304,7 @@ class History:
         return tuple(event for leg in self.legs for event in leg.restart.events)
 
     def of_model(self, instant: Instant) -> Instant:
-        """A state of a step in the unknowns of the model, without the forces of contacts."""
+        """State of a step in the unknowns of the model, without contact forces."""
         instant = self.flight.to_model(instant)
         size = self.model.size
         if len(instant.x) == size:
@@ -312,13 +312,13 @@ class History:
         return Instant(instant.time, instant.x[:size], instant.v[:size], instant.a[:size])
 
     def number_at(self, time: float) -> int:
-        """Number of the step that holds a time; at the end of a step, that one."""
+        """Number of the step that contains a time; at the end of a step, the number of that step."""
         return min(bisect_left(self.end_times, time), len(self.end_times) - 1)
 
     def rough_positions(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Unknowns and inputs at T times as the steps have them, shapes (T, size) and (T, inputs).
+        """Unknowns and inputs at T times by the polynomials of the steps, shapes (T, size) and (T, inputs).
 
-        Between the ends of steps constraints are open there by less than the error of the motion.
+        Between the ends of steps they violate constraints, by less than the error of the motion.
         """
         x = np.empty((len(times), self.model.size))
         inputs = np.empty((len(times), self.model.inputs.size))
@@ -350,7 +350,7 @@ class History:
             first += len(steps)
 
     def once(self, name: str, duration: float, computed: Callable[[], Known]) -> Known:
-        """A result for the motion up to a duration, s, computed once under its name: a search asks several times."""
+        """Return a result for the motion up to a duration, s, which is computed once and kept under its name."""
         if (name, duration) not in self._known:
             self._known[name, duration] = computed()
         known: Known = self._known[name, duration]
@@ -387,12 +387,12 @@ class History:
 
 @dataclass(frozen=True)
 class FreeFlight:
-    """Coordinates and momentum of the steps of rods that nothing holds: built once, for all motions of a model.
+    """Coordinates of the steps, and correction of momentum, for free rods; built once for all motions of a model.
 
     Attributes:
         model: the model.
         coordinates: coordinates of the steps; None for the unknowns of the model.
-        keeper: puts the momentum right; None where something is held.
+        keeper: correction of the momentum after a step; None if something is held.
     """
 
     model: Model
@@ -400,27 +400,27 @@ class FreeFlight:
     keeper: MomentumKeeper | None
 
     def __reduce__(self) -> tuple[Callable[..., FreeFlight], tuple[Model, bool]]:
-        """How pickle and copy make it anew: its functions are of one process."""
+        """Rebuild the record in pickled copies: its functions belong to one process."""
         return _flight, (self.model, self.coordinates is not None)
 
     def to_model(self, instant: Instant) -> Instant:
-        """A state in the unknowns of the model, with the forces of contacts behind them, from one of the steps."""
+        """Map a state of the steps to the unknowns of the model; contact forces stay appended."""
         return instant if self.coordinates is None else self.coordinates.to_model(instant)
 
     def to_steps(self, instant: Instant) -> Instant:
-        """A state as the steps have it, from one in the unknowns of the model."""
+        """Map a state in the unknowns of the model to the coordinates of the steps."""
         return instant if self.coordinates is None else self.coordinates.from_model(instant)
 
     def restart_of_steps(self, restart: Restart[Phases]) -> Restart[Phases]:
-        """A restart whose state is as the steps have it, from one in the unknowns of the model."""
+        """Map the state of a restart from the unknowns of the model to the coordinates of the steps."""
         return replace(restart, start=replace(restart.start, instant=self.to_steps(restart.start.instant)))
 
     def settled_in_steps(self, settling: Settling) -> Settle:
-        """The correction of the ends of steps, from that in the unknowns of the model."""
+        """Map a correction of the ends of steps from the unknowns of the model to the coordinates of the steps."""
         return lambda step: self.to_steps(settling(self.to_model(step.end)))
 
     def in_steps(self, equations: MotionEquations, guards: Guards | None) -> tuple[MotionEquations, Guards | None]:
-        """Equations and guards as the steps have them, from those in the unknowns of the model."""
+        """Map equations and guards from the unknowns of the model to the coordinates of the steps."""
         if self.coordinates is None:
             return equations, guards
         of_steps = self.coordinates.equations(equations)
@@ -430,12 +430,12 @@ class FreeFlight:
 
 
 def free_flight(model: Model, p: FloatArray | None = None, libraries: Libraries = INTERPRETED) -> FreeFlight:
-    """The coordinates of steps and the keeper of momentum of a model.
+    """Make the coordinates of the steps and the correction of momentum for a model.
 
     Args:
         model: the model.
-        p: as of :func:`integrated`.
-        libraries: shared objects that have :func:`functions_of_flight` and :func:`derivatives_of_flight`.
+        p: stacked parameters; None for a model without parameters.
+        libraries: shared objects that contain :func:`functions_of_flight` and :func:`derivatives_of_flight`.
     """
     # Who asks for parameters wants the steps in the unknowns of the model, to differentiate them.
     return _flight(model, p is None and can_be_centred(model), libraries)
@@ -449,13 +449,13 @@ def _flight(model: Model, centred: bool, libraries: Libraries = INTERPRETED) -> 
 
 
 def functions_of_flight(model: Model) -> list[ca.Function]:
-    """The functions that every step of what flies free calls; none where something is held."""
+    """Functions that every step of free rods calls; an empty list if something is held."""
     functions = CentredCoordinates(model).in_iterations if can_be_centred(model) else []
     return [*functions, *functions_of_momentum(model)] if flies_free(model) else functions
 
 
 def derivatives_of_flight(model: Model) -> list[ca.Function]:
-    """The functions that equations of what flies free are linearised with, beside functions of the model."""
+    """Functions, beside those of the model, for the linearised equations of free rods."""
     return [CentredCoordinates(model).derivatives] if can_be_centred(model) else []
 
 
@@ -483,15 +483,15 @@ def integrated(
         x: unknowns at the start, shape (size,); multipliers and tensions are a guess.
         v: rates of the unknowns, shape (size,), 1/s.
         method: the collocation method.
-        settings: how to step.
-        after_step: told of every step.
-        p: stacked parameters of a model that has some; else None.
-        phases: what touches at the start; None where that is looked for, and in a scene without exact contact.
-        kernels: as for :func:`equations_of`.
-        resume: where a motion goes on; x, v and phases count for nothing then. None for one that begins.
-        flight: free flight of the model; None for a new one.
-        stops: makes the values at whose zeros the motion stops; None where it goes to its end.
-        begun: how another motion of the model began that has the same start; None where that is not known.
+        settings: settings of the steps.
+        after_step: callback after every step.
+        p: stacked parameters; None for a model without parameters.
+        phases: contacts at the start; None to search for them, and in a scene without exact contact.
+        kernels: kernels as for :func:`equations_of`.
+        resume: state from which a motion continues, in place of x, v and phases; None for a motion that begins.
+        flight: free flight of the model; None to make it.
+        stops: values at whose zeros the motion stops; None for a motion to its end.
+        begun: restart at the start of another motion of the model with equal start; None if unknown.
 
     Raises:
         SceneError: the start contradicts the constraints.
@@ -604,7 +604,7 @@ def _switching(
     phases: ContactPhase | None,
     resume: Resume | None,
 ) -> tuple[Switching[Any], Any]:
-    """The switches of the equations of a motion, and their state at the start; arguments as of :func:`integrated`."""
+    """Make the switches of the equations of a motion, and their state at the start, see :func:`integrated`."""
     inputs = piece.at(piece.start).value
     resumed = None if resume is None else resume.phases
     if not model.scene.touches_exactly:
@@ -621,18 +621,18 @@ def _switching(
 
 
 def _joined(changes: Guards | None, ends: Guards | None, begin: Instant) -> tuple[Guards | None, int]:
-    """Guards of what changes the equations, then guards of what ends the motion; and the number of the first kind."""
+    """Join guards of changes of the equations and guards that end the motion; also return the number of the first."""
     if changes is None or ends is None:
         return changes or ends, 0 if changes is None else len(changes(begin))
     return lambda instant: np.concatenate([changes(instant), ends(instant)]), len(changes(begin))
 
 
 def _with_forces(settings: StepSettings, size: int, acting: float) -> StepSettings:
-    """Settings for equations with forces of contacts as further unknowns, which have no tolerance.
+    """Settings for equations with contact forces as further unknowns, which have no tolerance.
 
     Args:
-        settings: of the equations of the model.
-        size: number of unknowns with the forces.
+        settings: settings for the equations of the model.
+        size: number of unknowns including the forces.
         acting: time over which errors of velocity act, s.
     """
     more = size - len(settings.tolerance)
@@ -643,14 +643,14 @@ def _with_forces(settings: StepSettings, size: int, acting: float) -> StepSettin
 
 
 def _chatters(legs: Sequence[Leg], duration: float) -> bool:
-    """Whether cables have become slack and taut, or contacts have changed, over and over in next to no time."""
+    """Whether cables or contacts have changed too many times within AT_ONCE."""
     if len(legs) <= MOST_AT_ONCE:
         return False
     return legs[-1].integration.end.time - legs[-1 - MOST_AT_ONCE].integration.end.time < AT_ONCE * duration
 
 
 def _inputs_that_move(model: Model, piece: Piece, time: float) -> list[str]:
-    """Names of inputs with a speed at a time (s), without inputs of loads, which move no support, joint or cable."""
+    """Names of the inputs that move at a time (s), except inputs of loads, which move no support, joint or cable."""
     rate = piece.at(time).rate
     loads = {load.name for load in model.scene.loads}
     slices = model.inputs.slices.items()
@@ -658,7 +658,7 @@ def _inputs_that_move(model: Model, piece: Piece, time: float) -> list[str]:
 
 
 def _lengths_of_free_rods(model: Model) -> list[str]:
-    """Names of the lengths of free rods, as inputs, where nothing in the scene is held."""
+    """Names of the inputs that are lengths of free rods, in a scene without anything held."""
     in_world = [joint for joint in model.scene.joints if joint.body is None]
     if model.scene.supports or in_world:
         return []
@@ -672,10 +672,10 @@ def check_start(
 
     Args:
         model: the model.
-        piece: of its inputs, the first.
+        piece: first piece of the inputs.
         restart: the start.
-        sags: how much longer cables are than their ways, over the lengths of their rods, by cable.
-        duration: of the motion, s.
+        sags: excess of the length of each cable over its path, over the length of its rod, by cable.
+        duration: duration of the motion, s.
 
     Raises:
         SceneError: supports or joints are not closed, or would be torn open at once.

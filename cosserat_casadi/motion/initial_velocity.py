@@ -1,4 +1,4 @@
-"""The velocities that a scene begins to move with, as rates of the unknowns of its model."""
+"""Initial velocities of a scene, as rates of the unknowns of its model."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.scene.velocity_record import InitialVelocity
 
 POINTS = 200
-"""Abscissae at which the rates of strains are fitted by rates of the modes."""
+"""Number of abscissae at which rates of the modes are fitted to rates of the strains."""
 
 
 def with_velocities(model: Model, start: Start, piece: Piece) -> Start:
-    """A start with the velocities of the scene; bodies, carried bases and joints' coordinates go along with them.
+    """Give a start the velocities of the scene; bodies, carried bases and coordinates of joints follow from them.
 
     Args:
-        model: of the scene in motion.
-        start: at rest.
-        piece: of the inputs, which the motion begins with.
+        model: model of the scene in motion.
+        start: start at rest.
+        piece: first piece of the inputs.
     """
     if not model.scene.velocities or not start.found:
         return start
@@ -61,7 +61,7 @@ def with_velocities(model: Model, start: Start, piece: Piece) -> Start:
 
 
 def _strain_rates(rod: DiscreteRod, velocity: InitialVelocity) -> FloatArray:
-    """Rates of the strain coordinates of a rod that fit rates of its strains, shape (n,), for its own length."""
+    """Rates of the strain coordinates of a rod that fit its strain rates, shape (n,), for the length of the rod."""
     X = gauss_legendre(POINTS)[0] / 2.0 + 0.5
     rates = velocity.strain_rates(X)
     q = np.zeros(rod.size)

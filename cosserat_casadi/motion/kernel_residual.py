@@ -1,4 +1,4 @@
-"""The equations of motion of a model as functions of time and state, with the calls behind them."""
+"""The equations of motion of a model as functions of time and state, with the compiled calls that evaluate them."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from cosserat_casadi.motion.repeated_call import RepeatedCall
 class KernelResidual:
     """Inverse dynamics while the inputs follow their paths: (t, x, v, a) ↦ F, shape (n,).
 
-    A loop in C does not call it: it writes the arguments of the call in place.
+    A loop in C does not call this function: it writes the arguments of the call in place.
 
     Attributes:
-        call: inverse dynamics of (x, v, a, inputs, inputs_rate, inputs_acceleration).
+        call: inverse dynamics as a function of (x, v, a, inputs, inputs_rate, inputs_acceleration).
         inputs_at: t ↦ inputs, their rates and accelerations.
         moves: whether the inputs change.
-        cubics: a time, s, and the coefficients of inputs, rates and accelerations in powers of the time since then,
-            shape (4, 3 inputs); None where inputs are no such polynomials.
+        cubics: a time, s, and coefficients of inputs, rates and accelerations in powers of the time since then,
+            shape (4, 3 inputs); None if inputs are not cubic polynomials.
     """
 
     call: RepeatedCall
@@ -38,7 +38,7 @@ class KernelJacobians:
     """Derivatives of inverse dynamics in machine code: (t, x, v, a) ↦ stiffness, damping, mass, shape (n, n) each.
 
     Attributes:
-        call: the derivatives in the arguments of inverse dynamics.
+        call: the derivatives as a function of the arguments of inverse dynamics.
         inputs_at: t ↦ inputs, their rates and accelerations.
     """
 

@@ -1,10 +1,10 @@
 """A scene linearised about an equilibrium, for control: ẋ = A x + B u, y = C x + D u of deviations from it.
 
 The states are modal coordinates η of the undamped motion and their rates: with Φᵀ M Φ = I no mass matrix is inverted,
-so that coordinates without mass do no harm. These follow the rest at once, or relax where damping meets them alone.
+so that coordinates without mass do no harm. These follow the others at once, or relax if they have damping.
 
 Inputs that move a base or the length of a cable move the rods with them: δx = Z z + X_c δu with any X_c that the
-constraints allow. The inertia of that motion asks for the rate and the acceleration of such an input, which become
+constraints allow. The inertia of that motion needs the rate and the acceleration of such an input, which become
 further inputs.
 
 Outputs are positions of tips, bodies and sections, and the conjugates of actuators.
@@ -38,15 +38,15 @@ Place: TypeAlias = tuple[str, float]
 """A section of a rod: its name and the abscissa X."""
 
 QUICK = 1e-10
-"""Ratio of the slowest motions' squared frequency to a mode's, up to which the mode has no modal coordinate."""
+"""Ratio of the lowest squared frequency to that of a mode, up to which the mode has no modal coordinate."""
 
 UNHELD = 1e-7
-"""Share of what an input moves a constraint by that may be left open, as rounding."""
+"""Share of the displacement of a constraint by an input that may remain open, as rounding."""
 
 
 @dataclass(frozen=True)
 class StateSpace:
-    """y = C x + D u, of states whose rates follow from A x + B u.
+    """The output equation y = C x + D u, with states whose rates follow from A x + B u.
 
     Attributes:
         A: shape (n, n).
@@ -70,10 +70,10 @@ class StateSpace:
 
 @dataclass(frozen=True)
 class DescriptorModel(StateSpace):
-    """E ẋ = A x + B u in the unknowns of the scene, their rates, multipliers and tensions.
+    """The descriptor form E ẋ = A x + B u in the unknowns of the scene, their rates, multipliers and tensions.
 
     Attributes:
-        E: shape (n, n), singular where there are constraints or coordinates without mass.
+        E: shape (n, n), singular with constraints or coordinates without mass.
     """
 
     E: FloatArray
@@ -81,7 +81,7 @@ class DescriptorModel(StateSpace):
 
 @dataclass(frozen=True, repr=False)
 class LinearModel(Shown, StateSpace):
-    """ẋ = A x + B u in modal coordinates, their rates, then what relaxes.
+    """The state equation ẋ = A x + B u in modal coordinates, their rates, and relaxing coordinates.
 
     Attributes:
         modes: number of modal coordinates, the lowest frequencies first.
@@ -93,18 +93,18 @@ class LinearModel(Shown, StateSpace):
 
     @property
     def eigenvalues(self) -> FloatArray:
-        """Eigenvalues of A, ordered by size, shape (n,), 1/s."""
+        """Eigenvalues of A, by increasing size, shape (n,), 1/s."""
         values = np.linalg.eigvals(self.A)
         return np.asarray(values[np.argsort(np.abs(values), kind="stable")])
 
     def reduced(self, modes: int) -> LinearModel:
-        """This model with the first modes alone; what all other modes do statically is kept, in C, D and A.
+        """Return the model with the first modes alone; the static response of the other modes is kept in C, D and A.
 
-        Eigenvalues do not change where the loads have a potential and the damping is proportional to the stiffness, or
-        there is none; else they change the less the more modes are kept.
+        Eigenvalues do not change if the loads have a potential and the damping is zero or proportional to the
+        stiffness; else they change the less the more modes are kept.
 
         Args:
-            modes: number of modes that are kept, rigid motions among them.
+            modes: number of modes that are kept, including rigid motions.
 
         Raises:
             ValueError: the number is not from 1 to the number of the modes.
@@ -138,8 +138,8 @@ def linearise(solution: Solution, outputs: Sequence[str | Place] | None = None) 
     Args:
         solution: the equilibrium, with the model.
         outputs: positions of sections as ``("rod", 0.5)``; ``rod.tip.position``, ``body.position``, or
-            ``actuator.length`` and the like by the name of what the actuator does work on. By default the positions of
-            all tips, and of the middle of rods whose tip is held.
+            the conjugate of an actuator, such as ``actuator.length``. By default the positions of all tips, and of the
+            middle of rods whose tip is held.
 
     Raises:
         SolveError: the solution is no equilibrium, or a contact is neither pressed nor open.
@@ -158,12 +158,12 @@ def linearise(solution: Solution, outputs: Sequence[str | Place] | None = None) 
 
 @dataclass(frozen=True)
 class _Equations:
-    """Small motions with what inputs do to them.
+    """Equations of small motions with inputs.
 
     Attributes:
         model: the scene.
         motions: the equations without inputs.
-        by_inputs: derivatives of the residual with the inputs, their rates and accelerations, (size, inputs) each.
+        by_inputs: derivatives of the residual by inputs, by their rates and their accelerations, (size, inputs) each.
         contacts: contacts that press.
     """
 
@@ -190,10 +190,10 @@ class _Equations:
 
     @cached_property
     def carried(self) -> FloatArray:
-        """X_c: what moving inputs move constraints by, on the scaled coordinates, shape (n, inputs).
+        """X_c: scaled coordinates that follow the constraints which moving inputs displace, shape (n, inputs).
 
         Raises:
-            SceneError: the constraints leave no room.
+            SceneError: the constraints allow no such motion.
         """
         motions = self.motions
         gradients = motions.constraints
@@ -227,7 +227,7 @@ class _Equations:
 
     @cached_property
     def used(self) -> tuple[list[int], list[int], list[int]]:
-        """Indices of the inputs whose values, rates and accelerations enter; all values of the scene's inputs do."""
+        """Indices of the inputs whose values, rates and accelerations are inputs of the model; all values are."""
         values = self.contacts.given.tolist()
         rates = np.flatnonzero(np.any(self.forces[1], axis=0) | np.any(self.by_inputs[1], axis=0))
         accelerations = np.flatnonzero(np.any(self.forces[2], axis=0) | np.any(self.by_inputs[2], axis=0))
@@ -243,19 +243,19 @@ class _Equations:
         return tuple(names)
 
     def joined(self, matrices: Sequence[FloatArray]) -> FloatArray:
-        """Columns of values, rates and accelerations beside each other, as far as they enter."""
+        """Join the columns of values, rates and accelerations that are inputs of the model."""
         parts = [matrix[:, indices] for matrix, indices in zip(matrices, self.used, strict=True)]
         return np.hstack(parts)
 
 
 @dataclass(frozen=True)
 class _Coordinates:
-    """Modal coordinates η, and those without mass: ψ that damping holds back, and what follows at once.
+    """Modal coordinates η, coordinates ψ without mass but with damping, and static coordinates.
 
     Attributes:
         modal: Φ on the free coordinates, shape (k, r).
-        damped: Ψ, shape (k, d).
-        static: shape (k, s).
+        damped: Ψ on the free coordinates, shape (k, d).
+        static: basis of the static coordinates, shape (k, s).
     """
 
     modal: FloatArray
@@ -328,7 +328,7 @@ def _linear_model(equations: _Equations, watched: Outputs) -> LinearModel:
 def _first_order(
     stiffness: FloatArray, damping: FloatArray, forces: FloatArray, modal: int
 ) -> tuple[FloatArray, FloatArray]:
-    """A and B of the states η, η̇, ψ, where the first coordinates have unit mass and the rest have none."""
+    """A and B of the states η, η̇, ψ, for ``modal`` coordinates with unit mass and others without mass."""
     count = len(stiffness)
     relaxing = count - modal
     # Rows of ψ: C_ψψ ψ̇ = f − C_ψη η̇ − K_ψ a.
@@ -353,7 +353,7 @@ def _first_order(
 
 
 def _descriptor(equations: _Equations, watched: Outputs) -> DescriptorModel:
-    """The model in the unknowns: coordinates, their rates, then multipliers and tensions, forces of contacts last."""
+    """The model in the unknowns: coordinates, their rates, multipliers and tensions, then contact forces."""
     motions = equations.motions
     contacts = equations.contacts
     moving = motions.moving
@@ -406,9 +406,9 @@ class Outputs:
     """Outputs as linear functions of unknowns and inputs.
 
     Attributes:
-        names: of all outputs.
-        by_x: derivatives with the unknowns in motion, shape (outputs, size).
-        by_inputs: derivatives with the inputs, shape (outputs, inputs).
+        names: names of the outputs.
+        by_x: derivatives with respect to the unknowns of the motion, shape (outputs, size).
+        by_inputs: derivatives with respect to the inputs, shape (outputs, inputs).
     """
 
     names: tuple[str, ...]
@@ -417,10 +417,10 @@ class Outputs:
 
 
 def outputs_of(solution: Solution, wanted: Sequence[str | Place] | None) -> Outputs:
-    """The wanted outputs.
+    """Linearise the wanted outputs.
 
     Raises:
-        SceneError: with every one that is none.
+        SceneError: names that are no outputs, all of them.
     """
     model = solution.model
     x = ca.MX.sym("x", model.size)
@@ -466,7 +466,7 @@ def _default_outputs(model: Model) -> list[str | Place]:
 
 
 def _known_outputs(model: Model, x: ca.MX, inputs: ca.MX) -> dict[str, ca.MX]:
-    """All that has a name and may be an output."""
+    """All quantities that may be outputs, by name."""
     known = {}
     for rod in model.discrete.rods:
         known[f"{rod}.tip.position"] = model.tip[rod](x, inputs)[0]

@@ -1,4 +1,4 @@
-"""How rods move in a small motion δx: displacements and rotations of their sections, world axes."""
+"""Displacements and rotations of sections of rods in a small motion δx, world axes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ EQUAL = 1e-7
 """Relative difference below which eigenvalues belong to one cluster, whose shapes may be combined at will."""
 
 REAL = 1e-7
-"""Imaginary part, relative to the largest entry, below which a motion is in phase all over."""
+"""Imaginary part, over the largest entry, below which all entries of a motion count as in phase."""
 
 NumberArray = npt.NDArray[np.inexact]
 
@@ -26,8 +26,8 @@ class RodShape:
 
     Attributes:
         X: abscissae, shape (k,).
-        position: displacement δr of the sections, world axes, shape (p, k, 3), m for each unit of the motion.
-        rotation: rotation vector δθ of the sections, world axes, shape (p, k, 3), rad for each unit of the motion.
+        position: displacement δr of the sections, world axes, shape (p, k, 3), m per unit of the motion.
+        rotation: rotation vector δθ of the sections, world axes, shape (p, k, 3), rad per unit of the motion.
     """
 
     X: FloatArray
@@ -38,14 +38,14 @@ class RodShape:
 def rod_shape(
     model: Model, rod: str, x: FloatArray, inputs: FloatArray, motions: NumberArray, X: FloatArray
 ) -> RodShape:
-    """Displacements and rotations of a rod.
+    """Displacements and rotations of sections of a rod in small motions.
 
     Args:
         model: the scene.
         rod: name of the rod.
-        x: unknowns that the motions are about, shape (model.size,).
+        x: unknowns about which the motions are small, shape (model.size,).
         inputs: stacked inputs.
-        motions: δx, one a column, shape (model.size, p).
+        motions: motions δx as columns, shape (model.size, p).
         X: abscissae, shape (k,).
     """
     grid = model.discrete.rods[rod].grid
@@ -59,7 +59,7 @@ def rod_shape(
 
 
 def _rotation_vectors(changes: NumberArray, quaternions: FloatArray) -> NumberArray:
-    """δθ = 2 vec(δQ ⊗ Q*) / Q·Q of changes δQ, shape (p, k, 4), of quaternions, shape (k, 4)."""
+    """Rotation vectors δθ = 2 vec(δQ ⊗ Q*) / Q·Q of changes δQ, shape (p, k, 4), of quaternions Q, shape (k, 4)."""
     scalar = quaternions[:, :1]
     vector = quaternions[:, 1:]
     scalar_change = changes[..., :1]
@@ -72,20 +72,20 @@ def _rotation_vectors(changes: NumberArray, quaternions: FloatArray) -> NumberAr
 def normalised(
     model: Model, x: FloatArray, inputs: FloatArray, values: NumberArray, motions: NumberArray
 ) -> NumberArray:
-    """Motions scaled and turned in phase so that they can be compared and drawn.
+    """Scale motions and shift their phases so that they can be compared and drawn.
 
-    The largest entry of all displacements over the rod's length and rotations is one. Motions of one eigenvalue, whose
-    combinations have it too, are combined so that one moves most along x, the next along y, the rest along z.
+    The largest of all rotations, and displacements over the rod's length, becomes one. Motions of one eigenvalue may be
+    combined at will; they are combined so that one moves most along x, the next along y, the rest along z.
 
     Args:
         model: the scene.
-        x: unknowns that the motions are about.
+        x: unknowns about which the motions are small, shape (size,).
         inputs: stacked inputs.
-        values: eigenvalues, shape (p,); equal ones stand beside each other.
-        motions: δx, one a column, shape (size, p).
+        values: eigenvalues, shape (p,); equal ones are adjacent.
+        motions: motions δx as columns, shape (size, p).
 
     Returns:
-        shape (size, p).
+        the normalised motions, shape (size, p).
     """
     if not motions.shape[1]:
         return motions
@@ -107,7 +107,7 @@ def normalised(
 
 
 def end_of_cluster(values: NumberArray, count: int | None) -> int:
-    """Number of eigenvalues, at least the count, such that equal eigenvalues stay together; all for None."""
+    """Least number of eigenvalues, not below ``count``, that does not separate equal ones; all for None."""
     if count is None or count >= len(values):
         return len(values)
     for cluster in _clusters(values):
@@ -118,7 +118,7 @@ def end_of_cluster(values: NumberArray, count: int | None) -> int:
 
 
 def _entries(model: Model, x: FloatArray, inputs: FloatArray, motions: NumberArray) -> NumberArray:
-    """Displacements over length and rotations of all rods at their nodes, one motion a column.
+    """Displacements over length, and rotations, of all rods at their nodes; columns are motions.
 
     Displacements of all rods along x come first, then along y and along z, then the rotations.
     """
@@ -134,7 +134,7 @@ def _entries(model: Model, x: FloatArray, inputs: FloatArray, motions: NumberArr
 
 
 def _clusters(values: NumberArray) -> list[list[int]]:
-    """Indices of eigenvalues that are equal, cluster by cluster."""
+    """Group the indices of equal eigenvalues into clusters."""
     clusters: list[list[int]] = []
     for index, value in enumerate(values):
         if clusters and abs(value - values[clusters[-1][0]]) <= EQUAL * abs(value):
@@ -145,7 +145,7 @@ def _clusters(values: NumberArray) -> list[list[int]]:
 
 
 def _in_phase(entries: NumberArray) -> NumberArray:
-    """Factors that make the largest entry of each column one, shape (p,)."""
+    """Complex factors that make the largest entry of each column one, shape (p,)."""
     largest = np.argmax(np.abs(entries), axis=0)
     factors = entries[largest, np.arange(entries.shape[1])]
     moving = np.abs(factors) > 0.0
@@ -157,7 +157,7 @@ def _is_real(entries: NumberArray) -> bool:
 
 
 def _directions(shapes: FloatArray) -> FloatArray:
-    """Combinations of p shapes that sort them by direction, shape (p, p): along x, then y, then the rest."""
+    """Matrix that combines p shapes by direction, shape (p, p): the first along x, the next along y, then the rest."""
     part = len(shapes) // 6
     # The first axis counts most, so that it is settled before the others; what bends towards x turns about y.
     weights = np.repeat([4.0, 2.0, 1.0, 0.25, 0.5, 0.125], part)

@@ -1,9 +1,9 @@
-"""The momentum of free rods and bodies, put right after each step: exact to rounding, not to the order of the steps.
+"""Correction of the momentum of free rods and bodies after each step: exact to rounding, not to the order of steps.
 
-The positions of bases and the strains are coordinates, and momentum is no quadratic function of both, so that no method
-of collocation keeps it. The error of a step is the momentum of a small rigid motion of all rods and bodies together:
-added to the velocities, that motion leaves the strains, the joints and their rates as they are. The momentum after the
-step is the momentum before it plus the impulse of the loads by the quadrature of the step, which has the order of the
+The unknowns are positions of bases and strains, of which momentum is no quadratic function, so that no collocation
+method conserves it. The error of a step is compensated by the momentum of a small rigid motion of all rods and bodies
+together: added to the velocities, it leaves strains, joints and their rates unchanged. The momentum after the step is
+then the momentum before it plus the impulse of the loads by the quadrature of the step, which has the order of the
 step.
 """
 
@@ -27,23 +27,23 @@ from cosserat_casadi.numerics.step import TimeStep
 from cosserat_casadi.scene import Scene
 
 MOMENTA = 6
-"""Entries of momentum and angular momentum."""
+"""Number of entries of momentum and angular momentum together."""
 
 OF_A_BODY = [0, 3, 4, 5]
-"""Rigid motions whose momenta tell the momenta of all six: mass times speed is equal along any axis."""
+"""Rigid motions whose momenta determine those of all six: mass times speed is equal along any axis."""
 
 CORRECTIONS = 2
-"""Corrections of the velocities after one step: momentum is linear in them, so that the second is one of rounding."""
+"""Corrections of the velocities after one step: momentum is linear in them, so the second one removes rounding."""
 
 REGULAR = 1e-9
-"""Share of the largest momentum of a rigid motion below which one counts as none."""
+"""Momentum of a rigid motion, over the largest one, below which it counts as zero."""
 
 ROUNDING = 8.0 * float(np.finfo(np.float64).eps)
-"""Momentum, relative to the largest entry, that is rounding and not missing."""
+"""Error of momentum, over its largest entry, that counts as rounding."""
 
 
 def flies_free(model: Model) -> bool:
-    """Whether a scene is one piece, of rods and bodies that are joined to each other, which nothing holds."""
+    """Whether a scene is one free assembly of rods and bodies, joined to each other and held by nothing."""
     scene = model.scene
     held = [rod for rod in scene.rods if rod.base.rod is None and not rod.base.free]
     in_world = [joint for joint in scene.joints if joint.body is None and not joint.at_base]
@@ -51,7 +51,7 @@ def flies_free(model: Model) -> bool:
 
 
 def flies_alone(model: Model) -> bool:
-    """Whether a scene is one rod that nothing holds, without bodies."""
+    """Whether a scene is one free rod without bodies."""
     return flies_free(model) and len(model.discrete.frames) == 1 and not model.scene.bodies
 
 
@@ -72,13 +72,13 @@ def _pieces(scene: Scene) -> int:
 
 
 class MomentumKeeper:
-    """Corrects the velocities of free rods after a step so that momentum changes by the impulse of the loads alone.
+    """Correction of the velocities of free rods after a step: momentum changes by the impulse of the loads alone.
 
     Args:
-        model: of what flies free, see :func:`flies_free`.
-        to_model: a state in the unknowns of the model, from a state in the unknowns of the steps; None where these are
-            the model's. In both a frame moves with what flies free, and its pose has the same entries.
-        library: shared object that has the functions of :func:`functions_of_momentum`; None without one.
+        model: model of a free assembly, see :func:`flies_free`.
+        to_model: map from the unknowns of the steps to those of the model; None if they are equal. Both contain, in
+            the same entries, the pose of a frame that moves with the assembly.
+        library: shared object that contains :func:`functions_of_momentum`; None without one.
     """
 
     def __init__(
@@ -102,7 +102,7 @@ class MomentumKeeper:
         self._momentum, self._rate, self._momenta = calls
 
     def settled(self, step: TimeStep, piece: Piece) -> Instant:
-        """The end of a step, in a piece of the inputs, with the momentum that it has to have."""
+        """Correct the end of a step, in a piece of the inputs, to the momentum that it must have."""
         known, of_piece, momentum = self._last
         if known is not step.start or of_piece is not piece:
             momentum = self._momentum_of(self._to_model(step.start), piece)
@@ -127,7 +127,7 @@ class MomentumKeeper:
         return end
 
     def _impulse(self, step: TimeStep, piece: Piece) -> FloatArray:
-        """Impulse of the loads, and momentum of what rods gain, in a step, shape (6,), N s and N m s."""
+        """Impulse of the loads in a step, and momentum of supplied mass, shape (6,), N s and N m s."""
         if not self._changes:
             return np.zeros(6)
         stages = step.stages
@@ -143,7 +143,7 @@ class MomentumKeeper:
         return self._momentum(instant.x, instant.v, inputs.value, inputs.rate)
 
     def rigid_motions(self, x: FloatArray) -> FloatArray:
-        """Rates of the unknowns as all moves along an axis of the world, and turns about one, shape (size, 6)."""
+        """Rates of the unknowns in unit translations along, and rotations about, the world axes, shape (size, 6)."""
         motions = np.zeros((self._size, MOMENTA))
         for entries, frame in self._frames:
             deviation = x[entries]
@@ -156,7 +156,7 @@ class MomentumKeeper:
         return motions
 
     def _momenta_of(self, motions: FloatArray, instant: Instant, piece: Piece) -> FloatArray:
-        """Momentum of rigid motions, in which it is linear, shape (6, 6), symmetric as of a rigid body."""
+        """Momenta of the rigid motions as columns, the inertia matrix of a rigid body, symmetric, shape (6, 6)."""
         value = piece.remembered(instant.time).value
         still = np.zeros_like(value)
         # Column after column, as CasADi has them.
@@ -168,9 +168,9 @@ class MomentumKeeper:
 
 
 def functions_of_momentum(model: Model) -> list[ca.Function]:
-    """Momentum, its rate, momenta: momentum of (x, v, inputs, rate), 6×1, at one state, and at four side by side.
+    """Functions of momentum (x, v, inputs, rate) ↦ 6×1 at one state, of its rate, and of momentum at four states.
 
-    The rate is that along a motion, of (x, v, a, inputs, rate, acceleration), 6×1.
+    The rate along a motion is the function (x, v, a, inputs, rate, acceleration) ↦ 6×1.
     """
     x, v, a = (ca.MX.sym(name, model.size) for name in ("x", "v", "a"))
     inputs, rate, acceleration = (ca.MX.sym(name, model.inputs.size) for name in ("inputs", "rate", "acceleration"))

@@ -1,4 +1,4 @@
-"""Scenes that cannot be simulated: refused with all their problems, before any work is done."""
+"""Checks before a simulation: a scene that cannot be simulated is refused with all its problems."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from cosserat_casadi.scene.simulation import Simulation
 
 
 def check_simulation(model: Model, simulation: Simulation | None) -> None:
-    """Refuse what cannot be simulated.
+    """Refuse a model or settings that cannot be simulated.
 
     Raises:
-        SceneError: with all that is wrong.
+        SceneError: the model or the settings have problems, all of which the error lists.
     """
     problems = []
     if simulation is None:
@@ -32,7 +32,7 @@ def check_movable(model: Model) -> None:
     """Refuse a model that has no motion.
 
     Raises:
-        SceneError: with all that is wrong.
+        SceneError: the model has problems, all of which the error lists.
     """
     refuse(immovable(model))
 

@@ -1,8 +1,8 @@
-"""The equations of motion in machine code, where that pays.
+"""The equations of motion in machine code, if compiling saves time.
 
 A motion calls inverse dynamics and its derivatives thousands of times. In C they take a twentieth to a fifth of the
-time of CasADi's virtual machine; to write and to compile them takes seconds, once: a later motion of the same rods, on
-the same modes, takes them from the cache, whatever moves them and to whatever tolerance. The two differ by rounding.
+time of CasADi's virtual machine. To write and compile them takes seconds, once: a later motion of equal rods on equal
+modes takes them from the cache, for any inputs and any tolerance. The results of both differ by rounding.
 """
 
 from __future__ import annotations
@@ -54,52 +54,52 @@ RESIDUAL = "motion_residual"
 
 MARGINS = "motion_margins"
 RESOLUTION = "motion_resolution"
-"""Names in C of the margins of strains, and of the index that tells whether nodes resolve the rods."""
+"""Names in C of the margins of strains, and of the index that tells whether the nodes resolve the rods."""
 
 PROGRAM = "motion_program"
-"""Inverse dynamics as a program of scalars, three stages at once."""
+"""Name of inverse dynamics as a scalar program, for three stages at once."""
 
 INSTRUCTION = 7e-9
-"""Time of an instruction of inverse dynamics in CasADi's virtual machine, s: 5e-9 of few to 11e-9 of many."""
+"""Time of an instruction of inverse dynamics in CasADi's virtual machine, s: from 5e-9 for few to 11e-9 for many."""
 
 AS_MANY_RESIDUALS = 10.0
-"""Time of derivatives of inverse dynamics there, over inverse dynamics: 6 to 15 in robots of one to six rods."""
+"""Time of the derivatives of inverse dynamics there, over inverse dynamics: 6 to 15 for robots of one to six rods."""
 
 SAVED = {PROGRAM: 0.75, RESIDUAL: 0.2, JACOBIANS: 0.9}
-"""Share of the virtual machine's time that a program saves, machine code beyond a program, and machine code."""
+"""Share of the virtual machine's time saved by a program, by machine code beyond a program, and by machine code."""
 
 TO_COMPILE = {PROGRAM: (0.0, 4e-6), RESIDUAL: (0.3, 7e-5), JACOBIANS: (0.3, 3.3e-4)}
-"""Processor time for writing and compiling a function, s, and for each instruction of inverse dynamics more."""
+"""Processor time for writing and compiling a function, s, and the further time for each instruction, s."""
 
 ITERATION = 2e-4
-"""Time of an iteration of Newton's method in Python beyond that in C, s: 1.7e-4 to 6.5e-4, equations left out."""
+"""Extra time of a Newton iteration in Python over one in C, without the equations, s: 1.7e-4 to 6.5e-4."""
 
 TO_COMPILE_STEPS = 0.3
 """Processor time for compiling the steps, s; once for all models."""
 
 MOTIONS_TO_COME = 2.0
-"""Motions of which each takes as many steps as the last one: the next, and one that tells the error of its steps."""
+"""Expected motions with as many steps as the last one: the next, and one that tells the error of its steps."""
 
 MOTIONS_AFTER_FIRST = 4.0
 """Work of a search after its first motion, over the work of that motion: 2.3 to 5.2 in searches for modes."""
 
 TELLING_SHARE = 0.1
-"""Share of a piece of its inputs after which the work so far tells the work of a motion."""
+"""Share of a piece of the inputs after which the work so far foretells the work of the motion."""
 
 TO_BEGIN = 40
-"""Iterations of the first steps, which are short, beyond the usual number: they foretell nothing."""
+"""Extra iterations of the first, short steps, which are left out of the forecast."""
 
 
 @dataclass
 class MotionCompiler:
-    """Chooses the kernels for the motions of one simulation: machine code where it is at hand or pays.
+    """Selector of kernels for the motions of one simulation: machine code if it is cached or saves time.
 
     Attributes:
-        always: whether to compile even where that takes longer than it saves.
-        last: the work of the motion before; None before the first.
-        asked: for each function the model that it was looked for, and its machine code, None where there was none.
-        saved_by_steps: time that steps in C would have saved of the first motion, s.
-        steps_fail: whether a compiler has failed on the steps, which every step of Python may ask for.
+        always: whether to compile even if that takes longer than it saves.
+        last: work of the previous motion; None before the first.
+        asked: for each function, the model of the last search and the machine code that was found, else None.
+        saved_by_steps: time that steps in C would have saved in the first motion, s.
+        steps_fail: whether the compiler has failed on the steps; every step in Python may ask.
     """
 
     always: bool = False
@@ -110,11 +110,11 @@ class MotionCompiler:
 
     @cached_property
     def _compiler(self) -> str:
-        """Command of the C compiler; an ExportError is raised where there is none."""
+        """Command of the C compiler; without a compiler it raises ExportError."""
         return find_compiler()
 
     def learn(self, statistics: StepStatistics) -> None:
-        """Take note of the work of the motion for which kernels were asked last."""
+        """Record the work of the motion for which kernels were requested last."""
         saved_by_steps = self._saved_by_steps(statistics)
         for name, (model, found) in self.asked.items():
             if found is None:
@@ -128,7 +128,7 @@ class MotionCompiler:
             tally(stem_of_steps(), saved_by_steps)
 
     def _saved_by_steps(self, work: StepStatistics) -> float:
-        """Time that steps in C save of a motion whose kernels were asked for last, s."""
+        """Time that steps in C save in the motion for which kernels were requested last, s."""
         saved = ITERATION * work.iterations
         model, found = self.asked.get(RESIDUAL, (None, None))
         if model is not None and found is None and not can_be_centred(model):
@@ -137,10 +137,10 @@ class MotionCompiler:
         return saved
 
     def kernels(self, model: Model) -> StepKernels:
-        """The kernels for the next motion of a model.
+        """Choose the kernels for the next motion of a model.
 
         Raises:
-            ExportError: machine code is asked for in any case, and there is no compiler, or it fails.
+            ExportError: machine code is required, but there is no compiler, or it fails.
         """
         residual = self._compiled(model, RESIDUAL)
         jacobians = self._compiled(model, JACOBIANS)
@@ -177,10 +177,10 @@ class MotionCompiler:
         return self._stepper(foreseen) if foreseen > TO_COMPILE_STEPS else None
 
     def _stepper(self, foreseen: float) -> Stepper | None:
-        """The steps in machine code; None where they are not at hand and do not pay, or where no compiler makes them.
+        """Return the steps in machine code; None if they are not cached and do not pay, or without a working compiler.
 
         Args:
-            foreseen: time that they save of the rest of the search, s.
+            foreseen: time that they would save in the rest of the search, s.
         """
         if self.steps_fail:
             return None
@@ -198,7 +198,7 @@ class MotionCompiler:
         return CompiledSteps
 
     def _compiled(self, model: Model, name: str) -> RepeatedCall | None:
-        """A function in machine code; None where it is not at hand and does not pay."""
+        """Return a function in machine code; None if it is not cached and does not pay."""
         of_model, found = self.asked.get(name, (None, None))
         try:
             if of_model is not model:
@@ -214,7 +214,7 @@ class MotionCompiler:
         return found
 
     def _pays(self, model: Model, name: str) -> bool:
-        """Whether machine code saves more time than it takes to compile.
+        """Whether machine code saves more time than its compilation takes.
 
         That is foreseen where the next motions would take as long as the last one, or where earlier motions of this
         model have taken so long, of any process where it is kept for others: more motions are likely.
@@ -228,7 +228,7 @@ class MotionCompiler:
 
 
 def _saves(model: Model, name: str, foreseen: float) -> bool:
-    """Whether compiling a function takes less than it saves of the time foreseen for the virtual machine, s."""
+    """Whether compiling a function takes less time than it saves of the expected time of the virtual machine, s."""
     at_least, each = TO_COMPILE[name]
     saved = SAVED[name]
     if name == RESIDUAL and can_be_centred(model):
@@ -238,7 +238,7 @@ def _saves(model: Model, name: str, foreseen: float) -> bool:
 
 
 def _program_of(model: Model, *, write: bool) -> ScalarProgram | None:
-    """Inverse dynamics as a program; None where none was written, and none is to be, or where it has none."""
+    """Return inverse dynamics as a program; None if it is not written and ``write`` is false, or if it has none."""
     written: dict[str, ScalarProgram | None] = kept_with(model, "_programs", dict)
     if PROGRAM not in written and write:
         written[PROGRAM] = scalar_program(model.inverse_dynamics_in_scalars)
@@ -246,23 +246,23 @@ def _program_of(model: Model, *, write: bool) -> ScalarProgram | None:
 
 
 def _program_after(model: Model, iterations: int) -> ScalarProgram | None:
-    """The program for a motion that has taken so many iterations without; None where it does not pay yet."""
+    """Return the program for a motion after so many iterations without one; None as long as it does not pay."""
     foreseen = MOTIONS_TO_COME * _interpreted_time(model, PROGRAM, _iterations(iterations))
     return _program_of(model, write=_saves(model, PROGRAM, foreseen))
 
 
 def _iterations(iterations: int) -> StepStatistics:
-    """The work of a motion by its iterations alone."""
+    """Work of a motion that is known by its number of iterations alone."""
     return StepStatistics(0, 0, iterations, 0, float("nan"), float("nan"))
 
 
 def _spent(model: Model) -> dict[str, float]:
-    """Processor time that the virtual machine has taken for each function of a model, or of models that share it, s."""
+    """Processor time of the virtual machine so far for each function of a model, or of models that share it, s."""
     return kept_with(model, "_interpreted_time", lambda: dict.fromkeys(TO_COMPILE, 0.0))
 
 
 def _interpreted_time(model: Model, name: str, work: StepStatistics) -> float:
-    """Processor time that the virtual machine takes for a function in a motion, s."""
+    """Processor time of the virtual machine for a function in a motion, s."""
     calls = STAGES * work.iterations
     if name == JACOBIANS:
         calls = AS_MANY_RESIDUALS * work.jacobians
@@ -270,19 +270,19 @@ def _interpreted_time(model: Model, name: str, work: StepStatistics) -> float:
 
 
 def _instructions(model: Model) -> int:
-    """Number of instructions of inverse dynamics in scalars; steps in Python ask over and over."""
+    """Number of scalar instructions of inverse dynamics; it is kept, because steps in Python ask repeatedly."""
     count: int = kept_with(model, "_instructions", lambda: model.inverse_dynamics_in_scalars.n_instructions())
     return count
 
 
 def _in_machine_code(model: Model, name: str, compiler: str, *, write: bool) -> RepeatedCall | None:
-    """A function of a model in machine code.
+    """Load a function of a model in machine code, from the cache or after writing and compiling it.
 
     Args:
         model: the model.
         name: RESIDUAL or JACOBIANS.
-        compiler: its command.
-        write: whether to write and compile it where the cache has none; else the answer is None then.
+        compiler: command of the compiler.
+        write: whether to write and compile it if the cache does not have it; if false, the answer is None then.
 
     Raises:
         ExportError: the compiler fails.
@@ -300,7 +300,7 @@ def _in_machine_code(model: Model, name: str, compiler: str, *, write: bool) -> 
 
 
 def _library(model: Model, name: str, compiler: str, *, write: bool) -> Path | None:
-    """The shared object with a function; arguments as of :func:`_in_machine_code`."""
+    """Path of the shared object with a function; arguments as for :func:`_in_machine_code`."""
     key = _key(model, name)
     kept = None if key is None else compiled_from(name, key, compiler, flags_of_machine())
     if kept is not None or not write:
@@ -316,7 +316,7 @@ def _library(model: Model, name: str, compiler: str, *, write: bool) -> Path | N
 
 
 def _key(model: Model, name: str) -> str | None:
-    """Key of the origin of a function of a model; None where it has none."""
+    """Key of the origin of a function of a model; None if it has no key."""
     keys: dict[str, str | None] = kept_with(model, "_keys_of_equations", dict)
     if name not in keys:
         keys[name] = key_of(name, *_equations(model))
@@ -324,13 +324,13 @@ def _key(model: Model, name: str) -> str | None:
 
 
 def _stem(model: Model, name: str) -> str | None:
-    """Name of the tally of the time that went without machine code of a function of a model; None without a key."""
+    """Name of the record of time spent without machine code for a function of a model; None without a key."""
     key = _key(model, name)
     return None if key is None else f"{name}-{key}"
 
 
 def _equations(model: Model) -> list[Any]:
-    """All that the equations of motion depend on: neither the paths of inputs nor the tolerance are among it."""
+    """All data on which the equations of motion depend, without the paths of inputs and the tolerance."""
     if type(model) is not Model or model.parameters.size:
         return [model]
     levels: list[Any] = []
@@ -343,13 +343,13 @@ def _equations(model: Model) -> list[Any]:
 
 
 def functions_of_limits(model: Model) -> list[ca.Function]:
-    """The functions that judge states of a model: its resolution index, and margins to states that no rod can be in."""
+    """Functions that judge states of a model: its resolution index, and its margins from impossible states."""
     margins = [] if model.strain_margins is None else [with_dense_results(model.strain_margins, MARGINS)]
     return [with_dense_results(model.resolution_index, RESOLUTION), *margins]
 
 
 def _points(model: Model) -> list[MovingPoints]:
-    """Points of what touches exactly; with friction of rigid stops and cables too."""
+    """Points of rods and bodies in exact contact; with friction also those of rigid stops and cables."""
     return points_of(struck_beside_friction(model)) if model.scene.rubs_exactly else touching_points(model)
 
 
@@ -377,4 +377,4 @@ def _jacobians(model: Model) -> list[ca.Function]:
 
 
 WRITTEN = {RESIDUAL: (1, _residual), JACOBIANS: (MATRICES, _jacobians)}
-"""Number of results of each function, and the functions that are written with it, itself first."""
+"""Number of results of each function, and the functions in its shared object, with itself first."""

@@ -1,4 +1,4 @@
-"""How a motion ended, and the sentence that a user reads of it."""
+"""Outcome of a motion, and the sentence about it for the user."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from cosserat_casadi.motion.trajectory import MotionOutcome
 from cosserat_casadi.numerics.integration import StepOutcome
 
 NEARLY_TAUT = 1e-3
-"""Gap of a cable, over the rod's length, or of a joint at which it counts as about to become taut, or to stop."""
+"""Gap of a cable, over the rod's length, or of a joint, below which it counts as about to become taut, or to stop."""
 
 DEPENDENT = 1e-2
-"""Independence of the constraints below which they end a motion: it falls with the root of the time that is left."""
+"""Independence of the constraints below which they end a motion: it falls with the square root of the time left."""
 
 BEYOND_LIMITS = (MotionOutcome.PATH_VANISHED, MotionOutcome.BEYOND_MATERIAL, MotionOutcome.OUT_OF_PLANE)
-"""Ends of motions with states that no rod can be in."""
+"""Outcomes of motions that end in states which no rod can have."""
 
 OUTCOMES = {
     StepOutcome.COMPLETED: MotionOutcome.COMPLETED,
@@ -37,7 +37,7 @@ OUTCOMES = {
 
 
 def outcome_of(history: History) -> MotionOutcome:
-    """How a motion ended; of steps that were not solved, with the reason that the last state shows."""
+    """Determine the outcome of a motion; if a step was not solved, by the reason that the last state shows."""
     outcome = OUTCOMES[history.outcome]
     if outcome not in (MotionOutcome.STEP_TOO_SMALL, MotionOutcome.NOT_SOLVED):
         return outcome
@@ -49,7 +49,7 @@ def outcome_of(history: History) -> MotionOutcome:
 
 
 def independence(history: History) -> float:
-    """How independent the constraints are where a motion ends, columns counted by displacements."""
+    """Independence of the constraints at the end of a motion, with columns scaled by displacements."""
     model = history.model
     rows = Closing(model).rows
     jacobian, _ = model.jacobian(history.end.x, history.legs[-1].piece.at(history.end.time).value)
@@ -58,12 +58,12 @@ def independence(history: History) -> float:
 
 
 def independence_of(derivatives: FloatArray) -> float:
-    """How independent rows are: 0 where one follows from other rows, at most 1, infinite where there are none.
+    """Independence of rows: 0 for linearly dependent ones, at most 1; infinite without rows.
 
-    The smallest singular value over the largest, each row of unit length.
+    It is the smallest singular value over the largest, after rows are scaled to unit length.
 
     Args:
-        derivatives: of constraints by coordinates, shape (m, n).
+        derivatives: derivatives of constraints by coordinates, shape (m, n).
     """
     count, coordinates = derivatives.shape
     if count == 0:
@@ -76,7 +76,7 @@ def independence_of(derivatives: FloatArray) -> float:
 
 
 def snapping(history: History) -> list[str]:
-    """Names of the cables next to taut, and of the joints next to a stop, where a motion ends."""
+    """Names of the cables that are nearly taut, and of the joints close to a stop, at the end of a motion."""
     model = history.model
     end = history.at(history.end.time)
     sided = OneSided(model)
@@ -87,7 +87,7 @@ def snapping(history: History) -> list[str]:
 
 
 def message_of(history: History, outcome: MotionOutcome) -> str:
-    """The sentence of the outcome, with time and size of the step where the motion ended early."""
+    """Write the sentence of the outcome, with time and step size if the motion ended early."""
     if outcome in (MotionOutcome.COMPLETED, MotionOutcome.UNRESOLVED, *BEYOND_LIMITS):
         stopped = f" An event stopped it at t = {history.end.time:.6g} s." if history.stopped is not None else ""
         return f"{outcome.value}{stopped}"
@@ -101,7 +101,7 @@ def message_of(history: History, outcome: MotionOutcome) -> str:
 
 
 def unsettled(history: History) -> str:
-    """Where contact did not settle, in a sentence."""
+    """Write a sentence that says where contact did not settle."""
     restart = history.legs[-1].restart
     if restart.stalled is not None:
         return restart.stalled
@@ -113,9 +113,9 @@ def unsettled(history: History) -> str:
 
 
 def whirled(history: History) -> str:
-    """A sentence on rods without rotary inertia where a motion ends in a blow on them, or as it begins; else nothing.
+    """Write a sentence on rods without rotary inertia if a motion ends in a blow on them, or as it begins; else "".
 
-    Only the mass beside its chord resists there that a rod turns about itself: a nearly straight one has next to none.
+    Such a rod resists rotation about its axis only by the mass beside its chord, which a nearly straight rod lacks.
     """
     leg = history.legs[-1]
     if leg.integration.steps:
@@ -133,7 +133,7 @@ def whirled(history: History) -> str:
 
 
 def most_violent(history: History) -> str:
-    """The rod, or the body, whose accelerations displace it most where a motion ends."""
+    """Name the rod, or the body, whose accelerations displace it most at the end of a motion."""
     model = history.model
     accelerations = np.nan_to_num(np.abs(history.end.a), nan=np.inf) * displacements(model)
     largest = {}

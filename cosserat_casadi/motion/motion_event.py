@@ -1,8 +1,8 @@
-"""Events of users: a function of poses and inputs that crosses zero is noted, or ends the motion there.
+"""Events of users: zeros of a function of poses and inputs, which are recorded or end the motion.
 
-A motion that is to stop has the function among the guards of its steps, as contacts, cables and stops have theirs: its
-last step ends where the function vanishes. Events that are only noted leave the steps alone, and are looked for in
-their polynomials when they are done.
+A function that stops a motion is among the guards of the steps, like the guards of contacts, cables and stops: the
+last step ends where the function vanishes. Events that are only recorded do not change the steps; they are found in
+the polynomials of the finished steps.
 """
 
 from __future__ import annotations
@@ -30,18 +30,18 @@ FALLS = "falls"
 """Kinds of events in a result."""
 
 AHEAD = 1e-6
-"""Time after the begin of a stretch at which a function that is zero there tells its side, s."""
+"""Time after the start of a stretch at which a function that vanishes at the start shows its sign, s."""
 
 
 @dataclass(frozen=True)
 class MotionEvent:
-    """A function of a moving scene whose zeros are told.
+    """A function of a moving scene whose zeros are events.
 
     Attributes:
-        name: of the event in the result.
-        value: (model, x, inputs) ↦ a number, as a CasADi expression of unknowns and stacked inputs, such as
+        name: name of the event in the result.
+        value: (model, x, inputs) ↦ scalar, as a CasADi expression of unknowns and stacked inputs, such as
             ``model.tip["arm"](x, inputs)[0][2]``, the height of a tip.
-        stop: whether the motion ends where it crosses zero, in whichever direction.
+        stop: whether the motion ends where the function crosses zero, in either direction.
     """
 
     name: str
@@ -62,11 +62,11 @@ class EventWatch:
     events: Sequence[MotionEvent]
 
     def guards(self, piece: Piece, begin: Instant) -> Guards | None:
-        """Values of the events that stop a motion, positive where a stretch of it begins; None where none does.
+        """Make guards of the events that stop a motion, positive at the start of a stretch; None without such events.
 
         Args:
-            piece: of the inputs.
-            begin: of the stretch, in the unknowns of the model.
+            piece: piece of the inputs.
+            begin: start of the stretch, in the unknowns of the model.
         """
         numbers = self._stopping
         if self.events:
@@ -81,12 +81,12 @@ class EventWatch:
         return lambda instant: sides * self._stopping_values(piece, instant)
 
     def jumped(self, before: Piece, piece: Piece, at: Instant) -> int | None:
-        """Number of an event that stops a motion and jumps through zero with the inputs; None where none does.
+        """Number of an event that stops a motion and whose value jumps through zero with the inputs; None if none does.
 
         Args:
-            before: of the inputs, up to the jump.
-            piece: of the inputs from there on.
-            at: the instant of the jump, in the unknowns of the model.
+            before: piece of the inputs up to the jump.
+            piece: piece of the inputs after the jump.
+            at: instant of the jump, in the unknowns of the model.
         """
         if not self._stopping:
             return None
@@ -99,7 +99,7 @@ class EventWatch:
         return self.values(instant.x[: self.model.size], piece.at(instant.time).value)[self._stopping]
 
     def crossings(self, history: History) -> tuple[ContactEvent, ...]:
-        """All zeros of all events in a motion, and what stopped it, in their order."""
+        """Find all zeros of all events in a motion, including the one that stopped it, in order of time."""
         if not self.events or not history.steps:
             return ()
         steps = [step for _, step in history.steps]

@@ -1,10 +1,10 @@
-"""Simulate a scene to a tolerance in space and time together: modes and nodes are chosen for the motion.
+"""Simulate a scene to a tolerance in space and time together, with modes and nodes chosen for the motion.
 
-The motion is computed on one set of modes after the other, until their last coefficients tell that further ones would
-not matter, or two motions do: the distance of their paths, and how it falls from one to the next, bound the error of
-the last one. A strain that does not move keeps one mode, and a strain whose last coefficients do not tell keeps its
-number of modes. The steps are as exact as such motions mostly ask, and are checked on the last set of modes. See
-docs/theory.md, section 11.
+The motion is computed on one set of modes after another, until the last coefficients show that further ones are not
+needed, or two motions show it: the distance of their paths, and its decrease from one set to the next, bound the error
+of the last one. A strain that does not move keeps one mode, and a strain whose last coefficients do not matter keeps
+its number of modes. The steps have the exactness that such motions usually need, and are checked on the last set of
+modes. See docs/theory.md, section 11.
 """
 
 from __future__ import annotations
@@ -81,52 +81,52 @@ SPACE_SHARE = 0.7
 """Share of the tolerance that the modes and nodes may use up."""
 
 FORESEEN_SHARE = 0.5
-"""Share of the tolerance up to which what modes are foreseen to lack leaves room for the steps, whatever tells them."""
+"""Share of the tolerance that the expected error of the modes may use up, so that there is room for the steps."""
 
 MOST_AT_FRONTS = 0.9
-"""Share of the tolerance that fronts may use up, where a motion of exact steps tells the error that they make."""
+"""Share of the tolerance that fronts may use up, if a motion with exact steps tells their error."""
 
 TOLD_ERROR = 0.14
-"""Usual error of the paths, as a coarser motion tells it, over the power SLOPE of that one's tolerance of a step."""
+"""Usual error of the paths by a coarser motion, over the power SLOPE of the tolerance of that motion's steps."""
 
 TOLD_ERROR_OF_DAMPED = 0.06
-"""Usual error of the paths of rods that are all damped, as a coarser motion tells it, over that power."""
+"""Usual error of the paths by a coarser motion, over that power, if all rods are damped."""
 
 FINE = 2e-4
-"""Tolerance below which the search begins on the second rung: the first one would not do."""
+"""Tolerance below which the search begins on the second rung: the first one would not suffice."""
 
 LOOSEST = 1e-2
-"""Largest tolerance whose steps tell their error: longer ones damp growth, and agree on the rest."""
+"""Largest tolerance whose steps reveal their error: longer steps damp growing motions, and agree wrongly."""
 
 TOLD_AFTER = 3
-"""Levels after which further ones are computed with steps whose error was told: it would blur their distances."""
+"""Levels after which the steps are exact enough to have a known error, which would blur the distances of levels."""
 
 HOPED = 4.0
-"""Least power that a search hopes for before it gives up: of short waves it is below 1 until modes see them."""
+"""Power that a search hopes for before it gives up: for short waves it is below 1 until the modes resolve them."""
 
 SLOWEST = 0.25
-"""Smallest power of the modes that is believed: below it nothing converges."""
+"""Least credible power of the modes: below it nothing converges."""
 
 FASTEST = 8.0
-"""Largest power of the modes that is believed."""
+"""Largest credible power of the modes."""
 
 FASTEST_OF_WAVES = 4.0
-"""Largest power that is believed of waves of sudden loads that no damping takes: it falls from 5 to 2 on more modes."""
+"""Largest credible power for undamped waves of sudden loads, whose power falls from 5 to 2 on more modes."""
 
 ORDERS = 200
-"""Number of powers between the smallest and the largest that are compared with two distances."""
+"""Number of powers, from the least to the largest, that are compared with two distances."""
 
 FEW_MODES = 4
-"""Modes of the first level of rods that are cut into short elements, each of which sees less of a rod."""
+"""Modes on the first level for rods with short elements, each of which covers less of a rod."""
 
 MOST_RUNGS = 3
-"""Most rungs of the ladder of modes that are climbed at once."""
+"""Most rungs of the ladder of modes from one level to the next."""
 
 ORDER_OF_FRONTS = 1.0
-"""Power with which errors fall where a front arrives, on any elements."""
+"""Power of the modes with which errors fall where a front arrives, on any elements."""
 
 BLOWS = ("impact", "stop_hit")
-"""Kinds of events that are blows, whatever energy they take."""
+"""Kinds of events that are blows, whether or not they lose energy."""
 
 MOST_IMPACTS = 1000
 """Number of foreseen impacts beyond which no more modes are tried: so many take minutes."""
@@ -135,20 +135,20 @@ FASTEST_GROWTH = 3.0
 """Largest power of the modes with which the number of impacts is taken to grow."""
 
 MOST_WITHOUT_START = 4
-"""Sets of modes without a start in contact before none is told."""
+"""Sets of modes without a start in contact after which the search gives up."""
 
 FELT = 0.02
-"""Displacement by a coefficient, over the tolerance, from which it counts."""
+"""Displacement by a coefficient, over the tolerance, above which it counts."""
 
 FELT_AT_FRONTS = 0.3
-"""Displacement that fronts of a strain lack, over the share of modes, from which on it gets further ones."""
+"""Missing displacement at fronts of a strain, over the share of modes, above which the strain gets more modes."""
 
 
 ERRATIC = (
     "More exact steps do not bring the paths nearer to each other: after its impacts the motion hangs on rounding. "
     "Damp the rod, or give a larger tolerance."
 )
-"""Sentence for a motion that more exact steps do not bring nearer to a limit."""
+"""Sentence for a motion that does not converge with more exact steps."""
 
 
 UNDAMPED = (
@@ -156,7 +156,7 @@ UNDAMPED = (
     "{distance:.2g} of the length apart, and on {most} they are not expected to meet the tolerance. Give the rod "
     "damping.retardation_time, the obstacle a width, or a larger tolerance."
 )
-"""Sentence for a motion that more modes do not bring near to a limit."""
+"""Sentence for a motion that does not converge with more modes."""
 
 
 WAVES = (
@@ -165,7 +165,7 @@ WAVES = (
     "than {most} are tried. Give loads the time that they take, the rod damping.retardation_time, or a larger "
     "tolerance. Modes that accuracy.modes fixes are kept."
 )
-"""Sentence for a motion whose waves ask for more modes than there are."""
+"""Sentence for a motion whose waves need more modes than there are."""
 
 
 CHATTERS = (
@@ -185,15 +185,15 @@ class ResolvedMotion:
         simulator: the simulator that computed it.
         history: the motion.
         paths: paths of tips and bodies, which are compared with the paths of the next motion.
-        rung: place of the modes on the ladder.
-        modes: most polynomials of a strain in an element.
-        distance: distance of the paths from the paths of the level before; infinite for the first, zero where strains
-            have modes enough.
-        unseen: displacement over the length by coefficients that strains lack, as their last ones tell: of strains that
-            have no more modes than on the level before the distance tells nothing.
+        rung: index of the modes on the ladder.
+        modes: largest number of polynomials of a strain in an element.
+        distance: distance of the paths from the paths of the level before; infinite for the first level, zero if all
+            strains have enough modes.
+        unseen: missing displacement, over the length, of strains with no more modes than on the level before, by their
+            last coefficients; the distance of the paths says nothing about these strains.
         waves: whether sudden loads send waves along rods without damping.
-        fronts: displacement over the length that the fronts of these waves lack.
-        step_tolerance: of a step, over the length, that it was computed with; nan for steps of given size.
+        fronts: missing displacement at the fronts of these waves, over the length.
+        step_tolerance: tolerance of a step, over the length; nan for steps of given size.
     """
 
     simulator: Simulator
@@ -210,21 +210,21 @@ class ResolvedMotion:
 
 @dataclass
 class _Search:
-    """The way from one set of modes to the next.
+    """The state of a search for modes, level by level.
 
     Attributes:
-        scene: with the inputs of its motions free.
+        scene: the scene, with the inputs of its motions free.
         simulation: the settings of the user.
-        start: an equilibrium to start from; None for what the simulation says.
-        tell: is told of every step.
-        source: chooses the kernels of every motion.
-        events: of the user.
-        tolerance: of the paths, over the length.
-        ladder: modes of every strain in each element, level by level; none where the user fixes them.
+        start: equilibrium to start from; None for the start in the settings.
+        tell: callback after every step.
+        source: selector of the kernels of every motion.
+        events: events of the user.
+        tolerance: tolerance of the paths, over the length.
+        ladder: numbers of modes of every strain in each element, level by level; empty if the user fixes them.
         levels: the motions so far.
-        step_tolerance: of a step, over the length, of levels that are not foreseen to be the last; nan for steps of
-            given size.
-        time_error: error of the steps on the last level that it was told of; nan where none was.
+        step_tolerance: tolerance of a step, over the length, on levels that are not expected to be the last; nan for
+            steps of given size.
+        time_error: latest known error of the steps on a level; nan if none is known.
     """
 
     scene: Scene
@@ -246,7 +246,7 @@ class _Search:
 
     @property
     def order(self) -> float:
-        """Power p with which the error falls, as modes^−p, from the last two distances."""
+        """Power p with which the error falls as modes^−p, by the last two distances."""
         if len(self.levels) < 3 or self.levels[-2].distance == 0.0:
             return UNKNOWN_ORDER
         first, second, third = (level.modes for level in self.levels[-3:])
@@ -264,14 +264,14 @@ class _Search:
     def space_error(self) -> float:
         """Error of the paths that the modes of the last level leave, by the power of their number.
 
-        Of strains that keep their modes the last coefficients bound the rest.
+        For strains that keep their modes, the last coefficients bound the error.
         """
         if not np.isfinite(self.last.distance):
             return float("inf")
         return self.foreseen(self.last.modes, self.order)
 
     def foreseen(self, modes: int, order: float) -> float:
-        """Error of the paths on so many modes, if it falls with a power of their number."""
+        """Expected error of the paths on so many modes, if it falls with a power of their number."""
         left_now = self.last.unseen
         if self.last.distance > 0.0:
             left_now = max(left_now, self.last.distance * self.left_over_distance(order))
@@ -280,7 +280,7 @@ class _Search:
 
     @property
     def order_of_fronts(self) -> float:
-        """Power with which what fronts lack falls, from the last two levels."""
+        """Power with which the missing displacement at fronts falls, by the last two levels."""
         fronts = [level.fronts for level in self.levels[-2:]]
         if len(fronts) < 2 or min(fronts) == 0.0:
             return ORDER_OF_FRONTS
@@ -288,11 +288,11 @@ class _Search:
         return float(np.clip(order, ORDER_OF_FRONTS, FASTEST))
 
     def left_over_distance(self, order: float) -> float:
-        """Error of the paths that the modes of the last level leave, over their distance from the level before."""
+        """Error of the paths by the modes of the last level, over their distance from the level before."""
         return told_by_modes(self.last.modes, self.levels[-2].modes, order)
 
     def climb(self) -> int | None:
-        """The next rung: as far up as seems to be needed; None where the last one would not do."""
+        """Choose the next rung, as far up as seems to be needed; None if the last rung would not suffice."""
         rung = self.last.rung
         last = len(self.ladder) - 1
         if rung == last:
@@ -316,7 +316,7 @@ class _Search:
     def hopeless(self) -> str | None:
         """Why waves without damping keep motions on more modes far apart; None where they do not.
 
-        Waves of impacts and of sudden loads have all lengths, so that errors fall slowly on any number of modes.
+        Waves by impacts and sudden loads have all lengths, so that errors fall slowly on any number of modes.
         """
         if self.is_damped or len(self.levels) < 2:
             return None
@@ -333,7 +333,7 @@ class _Search:
         )
 
     def finer_modes(self, order: float) -> float:
-        """Modes that the tolerance asks for, over modes of the last level, if errors fall with this power of modes."""
+        """Number of modes that the tolerance needs, over that of the last level, if errors fall with this power."""
         allowed = SPACE_SHARE * self.tolerance
         by_distance = self.foreseen(self.last.modes, order) / allowed
         at_fronts = self.last.fronts / allowed
@@ -341,9 +341,9 @@ class _Search:
 
     @property
     def foreseen_impacts(self) -> float:
-        """Number of impacts on as many modes as meet the tolerance, by the impacts of the last two levels.
+        """Expected number of impacts on as many modes as meet the tolerance, by the impacts on the last two levels.
 
-        Sections of a rod that lies down strike one by one, over and over, and more modes have more sections.
+        Sections of a rod that lies down strike one by one, repeatedly, and more modes have more sections.
         """
         if len(self.levels) < 2:
             return 0.0
@@ -354,7 +354,7 @@ class _Search:
 
     @property
     def told(self) -> dict[str, float]:
-        """Modes, impacts and distance of the last two levels, as sentences name them."""
+        """Modes, impacts and distance of the last two levels, by the names in the sentences for the user."""
         before = self.levels[-2]
         return {
             "fewer": before.modes,
@@ -376,30 +376,30 @@ def simulate(
     part: float | None = None,
     events: Sequence[MotionEvent] = (),
 ) -> Motion:
-    """Motion of a scene, or of a model on its modes and nodes.
+    """Simulate the motion of a scene, or of a model on its modes and nodes.
 
-    A scene is simulated to its tolerance, on modes, nodes and steps that are chosen for it. Where the scene fixes modes
-    or nodes they are used as they are, and their error is estimated; so is a step that it fixes. Of a model only the
-    error of the time steps is controlled, and told.
+    A scene is simulated to its tolerance, on modes, nodes and steps that are chosen for it. Modes, nodes or a step that
+    the scene fixes are used as they are, and their error is estimated. For a model, only the error of the time steps is
+    controlled and reported.
 
     Args:
         subject: a validated scene with a table ``[simulation]``; or a model of a scene with motions, built with
             ``build(scene.with_motion_inputs(), …, moving=True)``.
-        start: an equilibrium of the scene to start from at rest; or a motion, or its file (JSON, NPZ), which goes on to
-            the duration with the digits of one motion, where ``compiled`` is the same. By default what the simulation
-            asks for.
-        simulation: duration, frames, tolerance; by default the scene's.
-        progress: told of every step.
-        compiled: whether the equations run as machine code. By default they do where the cache has them, or where
-            compiling them is foreseen to pay; with ``True`` they are compiled in any case, for motions to come, and
-            with ``False`` never; gaps of exact contact are computed in machine code in any case.
+        start: an equilibrium of the scene to start from at rest; or a motion, or its file (JSON, NPZ), which is
+            continued to the duration, digit for digit as one motion if ``compiled`` is equal. By default the start that
+            the simulation names.
+        simulation: duration, frames, tolerance; by default those of the scene.
+        progress: callback after every step.
+        compiled: whether the equations run as machine code. By default they do if the cache has them, or if compiling
+            them is expected to save time; with ``True`` they are compiled in any case, for later motions, and with
+            ``False`` never; gaps of exact contact are always computed in machine code.
         output: file, JSON or NPZ, of a long motion in parts: ``out.npz`` stands for ``out-0001.npz``, ``out-0002.npz``…
-        part: length of a part, s: each is written when it is done, and the last one is returned. By default the
-            motion is one, and is not written.
-        events: functions of poses and inputs whose zeros are told in ``motion.events``, or stop the motion.
+        part: length of a part, s: each part is written when it is done, and the last one is returned. By default the
+            motion is one part and is not written.
+        events: functions of poses and inputs whose zeros are listed in ``motion.events``, or stop the motion.
 
     Raises:
-        SceneError: the scene says nothing of a simulation, or cannot be simulated so.
+        SceneError: the scene has no simulation, or cannot be simulated with these settings.
         ExportError: there is no compiler, or it fails, and ``compiled`` is true or something touches exactly.
     """
     source = None if compiled is False else MotionCompiler(always=compiled is True)
@@ -425,7 +425,7 @@ def _simulated(
     source: MotionCompiler | None,
     events: Sequence[MotionEvent],
 ) -> Motion:
-    """A motion that is not written in parts; arguments as of :func:`simulate`, and what chooses the kernels."""
+    """Simulate a motion in one part; arguments as for :func:`simulate`, and the selector of kernels."""
     checkpoint = checkpoint_of(start)
     if checkpoint is not None:
         return go_on(subject, checkpoint, simulation, progress, source, events)
@@ -570,7 +570,7 @@ def _with_tolerance(search: _Search, first: Model) -> Motion:
 
 
 def _with_steps_of_others(search: _Search) -> ResolvedMotion:
-    """The last level, which was wrongly foreseen to be the last of all, with the steps of the levels before."""
+    """Recompute the last level, which was wrongly expected to be final, with the steps of the levels before."""
     level = search.last
     history = level.simulator.controlled(search.step_tolerance)
     if history.outcome is StepOutcome.INTERRUPTED:
@@ -584,7 +584,7 @@ def _with_steps_of_others(search: _Search) -> ResolvedMotion:
 
 
 def _with_waves(search: _Search, level: ResolvedMotion) -> ResolvedMotion:
-    """A level that knows of waves: of loads that act at once at its start, or jump, along rods without damping."""
+    """Mark a level on which loads that start suddenly, or jump, send waves along rods without damping."""
     simulator = level.simulator
     duration = search.simulation.duration
     if search.is_damped or not is_sudden(level.history, simulator.start, simulator.moving, duration):
@@ -593,16 +593,16 @@ def _with_waves(search: _Search, level: ResolvedMotion) -> ResolvedMotion:
 
 
 def _tell_fronts(search: _Search, history: History) -> None:
-    """Tell what fronts lack by a motion of more exact steps: long ones damp the last coefficients, which tell it."""
+    """Revise the missing displacement at fronts by a motion with more exact steps; long ones damp last coefficients."""
     if search.last.waves and history.completed:
         fronts = lacking_at_fronts(history, search.simulation.duration)
         search.levels[-1] = replace(search.last, fronts=fronts)
 
 
 def _allowed(search: _Search, history: History) -> float:
-    """Error of the paths that the steps of a motion on the last level's modes may make, over the length.
+    """Allowed error of the paths by the steps of a motion on the last level's modes, over the length.
 
-    What the modes have left over of their share is the steps' to use. Where they miss the tolerance no steps meet it.
+    The steps may use what the modes leave of their share. If the modes miss the tolerance, no steps meet it.
     """
     _tell_fronts(search, history)
     space_error = search.space_error
@@ -612,7 +612,7 @@ def _allowed(search: _Search, history: History) -> float:
 
 
 def _asks_for_modes(search: _Search, timed: TimedHistory) -> bool:
-    """Whether exact steps tell that fronts lack more than the level's steps told, and more modes may be tried."""
+    """Whether exact steps show that fronts lack more than the level's steps told, and more modes may be tried."""
     if not search.last.waves or not timed.history.completed or search.climb() is None:
         return False
     are_exact = timed.error <= _allowed(search, timed.history)
@@ -620,7 +620,7 @@ def _asks_for_modes(search: _Search, timed: TimedHistory) -> bool:
 
 
 def _make_last(search: _Search, timed: TimedHistory) -> None:
-    """Put a motion of exact steps in the place of the last level's."""
+    """Replace the motion of the last level by one with more exact steps."""
     # The level counts as one of the others, TIGHTER times as coarse: steps of half its own tell their error.
     search.step_tolerance = TIGHTER * timed.tolerance
     paths = search.last.simulator.paths(timed.history)
@@ -628,7 +628,7 @@ def _make_last(search: _Search, timed: TimedHistory) -> None:
 
 
 def _is_erratic(search: _Search) -> bool:
-    """Whether the first motion is as far from one of coarser steps as that is from one of still coarser."""
+    """Whether the first motion is as far from one with coarser steps as that one from one with still coarser steps."""
     level = search.levels[0]
     if not np.isfinite(search.step_tolerance):
         return False
@@ -652,15 +652,15 @@ def _is_erratic(search: _Search) -> bool:
 
 
 def _erratic(search: _Search) -> Motion:
-    """The motion of the first level, where more exact steps do not converge: nor would more modes."""
+    """Judge the motion of the first level, which converges neither with more exact steps nor with more modes."""
     motion = _judged(search, search.levels[0], search.time_error, [])
     return replace(motion, message=f"{motion.message} {ERRATIC}")
 
 
 def _given_up(search: _Search, why: str) -> Motion:
-    """The motion of the last level, and why no more modes are tried.
+    """Judge the motion of the last level, and say why no more modes are tried.
 
-    With waves of sudden loads steps err by more than their share: a motion of more exact ones tells it.
+    With waves of sudden loads the steps err by more than their share, which a motion with more exact steps shows.
     """
     level = search.last
     if level.waves and np.isfinite(search.step_tolerance) and not is_struck(level.history):
@@ -677,9 +677,9 @@ def _given_up(search: _Search, why: str) -> Motion:
 
 
 def _on_level(search: _Search, simulator: Simulator, modes: int) -> tuple[History, float]:
-    """The motion on a level of so many modes, and the tolerance of its steps, over the length; nan of given ones.
+    """Compute the motion on a level of so many modes; also return the tolerance of its steps, nan for given steps.
 
-    The first level settles the size of given steps, or how exact the steps are to be.
+    The first level determines the size of given steps, or the tolerance of the steps.
     """
     given = search.simulation.step is not None or simulator.has_equal_steps
     if not search.levels and given:
@@ -704,9 +704,9 @@ def _on_level(search: _Search, simulator: Simulator, modes: int) -> tuple[Histor
 
 
 def _seems_last(search: _Search, modes: int) -> bool:
-    """Whether so many modes are foreseen to be enough, by what the last levels lack.
+    """Whether so many modes are expected to be enough, by the errors of the last levels.
 
-    The level is then computed with the more exact steps at once, which the last level before may tell the error of.
+    The level is then computed with the more exact steps at once; the level before may tell their error.
     """
     if not search.levels or search.scene.has_contact or is_struck(search.last.history):
         return False
@@ -719,7 +719,7 @@ def _seems_last(search: _Search, modes: int) -> bool:
 
 
 def _first_step_tolerance(search: _Search) -> float:
-    """Tolerance of a step, over the length, with which motions usually keep to the share of the steps."""
+    """Tolerance of a step, over the length, with which the errors of steps usually keep within their share."""
     foreseen = TOLD_ERROR_OF_DAMPED if search.is_damped else TOLD_ERROR
     allowed = TIME_SHARE * min(search.tolerance, LOOSEST)
     first = float((allowed / foreseen) ** (1.0 / SLOPE))
@@ -730,7 +730,7 @@ def _first_step_tolerance(search: _Search) -> float:
 
 
 def _timed(search: _Search) -> TimedHistory:
-    """The motion of the last level with steps as exact as the tolerance asks for, and their error."""
+    """Compute the motion of the last level with steps as exact as the tolerance demands, and their error."""
     level = search.last
     if search.scene.rubs_exactly and search.simulation.step is None:
         return level.simulator.halved(_allowed(search, level.history), level.history)
@@ -747,9 +747,9 @@ def _timed(search: _Search) -> TimedHistory:
 
 
 def _told_by_level_before(search: _Search) -> TimedHistory:
-    """The last level's motion with the error of its steps, by the level before, whose steps are less exact.
+    """Estimate the error of the steps of the last level's motion by the level before, whose steps are less exact.
 
-    That one's modes err too: what both make of the paths together is taken for the steps'.
+    The modes of the level before err too: the distance of the paths by modes and steps is ascribed to the steps.
     """
     before, level = search.levels[-2:]
     factor = before.step_tolerance / level.step_tolerance
@@ -762,13 +762,13 @@ def _told_by_level_before(search: _Search) -> TimedHistory:
 
 
 def _timed_on_last(search: _Search, unseen: float) -> TimedHistory | None:
-    """The motion on modes that are enough, as :func:`_timed`; None where more exact steps tell that they are not.
+    """Compute the motion on sufficient modes, as :func:`_timed`; None if more exact steps show that they are not.
 
-    The level is then computed with the more exact steps: long ones damp growth, and waves.
+    The level is then computed with the more exact steps, as long ones damp growing motions and waves.
 
     Args:
-        search: whose last level has modes enough.
-        unseen: what its strains lack, over the length.
+        search: search whose last level has enough modes.
+        unseen: missing displacement of its strains, over the length.
     """
     level = search.last
     search.levels[-1] = replace(level, distance=0.0, unseen=unseen)
@@ -792,19 +792,19 @@ def _simulator(search: _Search, model: Model, stage: str) -> Simulator:
 
 
 def _uniform(scene: Scene, modes: int) -> dict[str, Discretisation]:
-    """Discretisation with the same number of modes for every strain."""
+    """Discretisation of every rod with one number of modes for all strains."""
     return discretise(scene, modes, nodes_for(modes) + SPARE_NODES)
 
 
 def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation] | None, float]:
-    """Modes of the next level: as many as it has, but of strains that do not need them.
+    """Choose the modes of the next level: the given number, except for strains that do not need them.
 
-    After an impact a strain that moves needs them: its modes say how much of the rod the impact stops, which its last
-    coefficients do not tell.
+    After an impact every moving strain needs them: its modes determine how much of the rod the impact stops, which its
+    last coefficients do not tell.
 
     Returns:
-        the modes, None where none lacks more than modes may leave, and what strains lack that get no further ones, over
-        the length.
+        the modes, or None if no strain lacks more than the modes' share; and the missing displacement of strains that
+        keep their modes, over the length.
     """
     history = search.last.history
     moved_by = felt(history, search.simulation.duration)
@@ -841,18 +841,18 @@ def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation] 
 
 
 def _has_blows(history: History) -> bool:
-    """Whether a motion has blows of contacts, stops or cables; elastic ones of contacts and stops take no energy."""
+    """Whether a motion has blows of contacts, stops or cables; elastic blows of contacts and stops lose no energy."""
     return history.lost > 0.0 or any(event.kind in BLOWS for event in history.events)
 
 
 def _judged(search: _Search, level: ResolvedMotion, error: float, companions: Sequence[Companion | None]) -> Motion:
-    """The motion of a level that was computed to its end, with its error; what the user fixed need but resolve it."""
+    """Judge the motion of a level that was computed to its end, with its error; fixed modes need only resolve it."""
     bound = bound_of(search.scene, search.simulation, search.tolerance)
     return judged(level.simulator, level.history, error, bound, companions)
 
 
 def _interrupted(search: _Search) -> Motion:
-    """The finest motion that was computed to its end when the search was stopped."""
+    """Return the finest motion that was computed to its end before the search was interrupted."""
     level = search.last
     error = search.space_error + search.time_error
     told = f": its estimated error is {error:.2g} of the length."

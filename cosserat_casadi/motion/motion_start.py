@@ -1,4 +1,4 @@
-"""How a motion begins: at rest, in an equilibrium or in the unloaded shape."""
+"""Start of a motion: at rest, in an equilibrium or in the unloaded shape."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from cosserat_casadi.motion.start_in_contact import resting
 from cosserat_casadi.numerics.newton import relative_norm
 
 Residual = Callable[..., FloatArray]
-"""Residual of the equations of motion, shape (size,), of x, v, a, inputs, and their rates and accelerations."""
+"""(x, v, a, inputs, their rates, their accelerations) ↦ residual of the equations of motion, shape (size,)."""
 
 UNLOADED = "At rest in the unloaded shape."
 SWINGS = (
@@ -59,17 +59,17 @@ FREE_TOUCHES = (
 
 @dataclass(frozen=True)
 class Start:
-    """Where a motion begins.
+    """The state in which a motion begins.
 
     Attributes:
         x: unknowns, shape (size,); multipliers and tensions are a guess.
-        sentence: what the user is told; of a start that failed, why.
+        sentence: sentence for the user; for a start that failed, the reason.
         v: rates of the unknowns, shape (size,), 1/s; None at rest.
         found: whether there is a state to start from.
-        phases: what touches; None where that is looked for.
-        asks_for_modes: whether none is found on these modes, and other modes may have one.
-        resume: where a motion goes on; None for one that begins.
-        equilibrium: by which a start on other modes is near; None where it is looked for anew.
+        phases: the contacts; None if they have to be searched for.
+        asks_for_modes: whether no start was found on these modes, but other modes may have one.
+        resume: state from which a motion continues; None for a motion that begins.
+        equilibrium: guess for a start on other modes; None if such a start is solved for anew.
     """
 
     x: FloatArray
@@ -83,16 +83,16 @@ class Start:
 
 
 def resumed_start(model: Model, resume: Resume) -> Start:
-    """Where a motion goes on."""
+    """Make the start of a motion that continues."""
     return Start(model.unloaded(), RESUMED.format(time=resume.at.time), resume=resume)
 
 
 def unloaded_start(model: Model, inputs: FloatArray) -> Start:
-    """Start at rest in the unloaded shape.
+    """Make a start at rest in the unloaded shape.
 
     Args:
-        model: of the scene in motion.
-        inputs: at the start, shape (model.inputs.size,).
+        model: model of the scene in motion.
+        inputs: inputs at the start, shape (model.inputs.size,).
     """
     asked = model.scene.simulation is not None and model.scene.simulation.start is not None
     x = _own_unloaded(model)
@@ -104,14 +104,14 @@ def unloaded_start(model: Model, inputs: FloatArray) -> Start:
 def equilibrium_start(
     model: Model, inputs: FloatArray, near: Solution | None = None, residual: Residual | None = None
 ) -> Start:
-    """Start at rest in the equilibrium of the inputs, free bases held where the scene puts them.
+    """Make a start at rest in the equilibrium at the inputs, with free bases held at their poses in the scene.
 
     Args:
-        model: of the scene in motion.
-        inputs: at the start, shape (model.inputs.size,).
-        near: the equilibrium on other modes; None where it is not known.
-        residual: of the equations of motion, without parameters, as :class:`StepKernels` has it; None where it is not
-            at hand.
+        model: model of the scene in motion.
+        inputs: inputs at the start, shape (model.inputs.size,).
+        near: the equilibrium on other modes; None if unknown.
+        residual: compiled residual of the equations of motion, without parameters, of :class:`StepKernels`; None if
+            there is none.
     """
     unloaded = _own_unloaded(model)
     if near is None and residual is not None and _rests(model, unloaded, inputs, residual):
@@ -124,7 +124,7 @@ def equilibrium_start(
 
 
 def _own_unloaded(model: Model) -> FloatArray:
-    """Unknowns of the unloaded scene, shape (size,), with frames where the values of its parameters put them."""
+    """Unknowns of the unloaded scene, shape (size,), with frames at the poses that the parameters give them."""
     x = model.unloaded()
     if model.discrete.scaling is None:
         return x
@@ -138,7 +138,7 @@ def _own_unloaded(model: Model) -> FloatArray:
 
 
 def _rests(model: Model, unloaded: FloatArray, inputs: FloatArray, residual: Residual) -> bool:
-    """Whether the unloaded scene rests: the functions of statics take longer to write than the motion to compute."""
+    """Whether the unloaded scene is an equilibrium, so that the functions of statics need not be written."""
     if model.scene.held() is not model.scene or model.scene.touches_exactly:
         return False
     no_rates = np.zeros_like(inputs)
@@ -148,11 +148,11 @@ def _rests(model: Model, unloaded: FloatArray, inputs: FloatArray, residual: Res
 
 
 def given_start(model: Model, solution: Solution) -> Start:
-    """Start at rest in an equilibrium of the same scene, at the inputs that it was solved for.
+    """Make a start at rest in a given equilibrium of the scene, at its inputs.
 
     Args:
-        model: of the scene in motion.
-        solution: on any discretisation with the same elements; free bases were held.
+        model: model of the scene in motion.
+        solution: the equilibrium, on any discretisation with the same elements, with free bases held.
     """
     held = model_at_rest(model)
     names = set(held.inputs.names)
@@ -164,12 +164,12 @@ def given_start(model: Model, solution: Solution) -> Start:
 
 
 def _frees_bases(held: Model, model: Model) -> bool:
-    """Whether bases that are held at rest are unknowns of the model in motion."""
+    """Whether bases that statics holds are unknowns of the model in motion."""
     return held.in_motion.size != model.size
 
 
 def _started(model: Model, solution: Solution, sentence: str) -> Start:
-    """The start in an equilibrium of the held scene."""
+    """Make the start in an equilibrium of the held scene."""
     x = _own_unloaded(model)
     if not solution.converged:
         return Start(x, solution.message, found=False)
@@ -188,12 +188,12 @@ def _started(model: Model, solution: Solution, sentence: str) -> Start:
 
 
 def least_gap_of_rods(model: Model, x: FloatArray, inputs: FloatArray) -> float:
-    """The least gap of rods that touch each other exactly, over the length; infinite where there are none.
+    """Least gap between rods that may touch each other exactly, over the length; infinite without such rods.
 
     Args:
-        model: of the scene in motion.
+        model: model of the scene in motion.
         x: unknowns, shape (size,).
-        inputs: stacked, shape (model.inputs.size,).
+        inputs: stacked inputs, shape (model.inputs.size,).
     """
     if not model.scene.rods_touch_exactly:
         return float("inf")
@@ -202,7 +202,7 @@ def least_gap_of_rods(model: Model, x: FloatArray, inputs: FloatArray) -> float:
 
 
 def _inputs(model: Model, solution: Solution) -> FloatArray:
-    """The inputs of a motion that a solution was found for, shape (model.inputs.size,)."""
+    """Inputs of a motion with the values of a solution, shape (model.inputs.size,)."""
     names = set(model.inputs.names)
     # The forces of contacts are inputs of the solution's model.
     given = solution.model.inputs.unpack(solution.inputs)
@@ -210,7 +210,7 @@ def _inputs(model: Model, solution: Solution) -> FloatArray:
 
 
 def _touching(model: Model, solution: Solution, sentence: str) -> Start:
-    """Start in an equilibrium in contact on the motion's own modes, next to a solution."""
+    """Make a start in an equilibrium in contact on the modes of the motion, next to a solution."""
     inputs = _inputs(model, solution)
     held = model_at_rest(model)
     guess = held.with_flows(projected(solution, model)[: held.size])

@@ -1,7 +1,7 @@
-"""Inputs over time: values, rates and accelerations of all inputs, exact, in pieces that are smooth.
+"""Inputs over time: exact values, rates and accelerations of all inputs, in smooth pieces.
 
-Where an input has a table, the sum of its tables stands for the scene's value; without one the scene's value stays. Its
-waves are added to that.
+The sum of the tables of an input replaces the value of the scene; an input without a table keeps that value. Its waves
+are added.
 """
 
 from __future__ import annotations
@@ -22,22 +22,22 @@ from cosserat_casadi.model.inputs import InputLayout
 from cosserat_casadi.scene.motion_records import InputMotion
 
 SAME_TIME = 1e-12
-"""Distance of two times, relative to the duration, at which they are one: pieces are longer."""
+"""Difference of two times, over the duration, up to which they count as equal: pieces are longer."""
 
 MOST_CUTS = 50
-"""Kinks of a table up to which steps end at each kink; a table with more is a record, and steps have their own pace."""
+"""Most kinks of a table at which steps end; a table with more kinks is a record, whose kinks steps may pass."""
 
 REMEMBERED_TIMES = 16
-"""Times at which the inputs are remembered: times of a step and some more."""
+"""Number of times at which the inputs are kept: the times of a step and some more."""
 
 
 class InputState(NamedTuple):
     """All inputs at one time, in the order of the stacked vector.
 
     Attributes:
-        value: shape (inputs,), in the units of the inputs.
-        rate: first derivative with time, shape (inputs,), units per s.
-        acceleration: second derivative with time, shape (inputs,), units per s².
+        value: values, shape (inputs,), in the units of the inputs.
+        rate: first time derivative, shape (inputs,), units per s.
+        acceleration: second time derivative, shape (inputs,), units per s².
     """
 
     value: FloatArray
@@ -51,8 +51,8 @@ class Break:
 
     Attributes:
         input: name of the input.
-        time: s.
-        order: of the first derivative that jumps: 0 the value itself, 1 its rate, 2 its acceleration.
+        time: time of the break, s.
+        order: order of the first derivative that jumps: 0 for the value itself, 1 for its rate, 2 for its acceleration.
     """
 
     input: str
@@ -62,12 +62,12 @@ class Break:
 
 @dataclass(frozen=True)
 class Piece:
-    """A span of time in which all inputs are smooth, but for weak kinks that steps may reach over.
+    """A span of time in which all inputs are smooth, except for weak kinks that steps may pass.
 
     Attributes:
-        start: s.
-        end: s.
-        kinks: times of weak kinks inside, ascending, s: see :attr:`_Path.weak`.
+        start: start of the span, s.
+        end: end of the span, s.
+        kinks: times of weak kinks inside, ascending, s; see :attr:`_Path.weak`.
     """
 
     start: float
@@ -78,16 +78,16 @@ class Piece:
 
     @property
     def smooth(self) -> float:
-        """Shortest time between kinks and ends, s."""
+        """Shortest time between two neighbouring kinks or ends, s."""
         return float(np.diff([self.start, *self.kinks, self.end]).min())
 
     @property
     def moves(self) -> bool:
-        """Whether an input has a path."""
+        """Whether any input has a path over time."""
         return bool(self._paths)
 
     def at(self, t: float) -> InputState:
-        """The inputs at a time; at start and end their limits from within, beyond them as they would go on."""
+        """Inputs at a time; at start and end their limits from within, beyond these the continuation of the piece."""
         # Every stage of a step asks for them.
         if self._polynomial is not None:
             s = t - self.start
@@ -100,14 +100,14 @@ class Piece:
 
     @property
     def cubics(self) -> tuple[float, FloatArray] | None:
-        """The start, s, and coefficients as of ``_polynomial``; None where these are None."""
+        """The start, s, and the coefficients of ``_polynomial``; None without such coefficients."""
         return None if self._polynomial is None else (self.start, self._polynomial)
 
     @cached_property
     def _polynomial(self) -> FloatArray | None:
-        """Coefficients of values, rates and accelerations of all inputs, shape (4, 3 inputs), in powers of t − start.
+        """Coefficients of values, rates and accelerations of all inputs in powers of t − start, shape (4, 3 inputs).
 
-        None where an input is no cubic polynomial in the whole piece.
+        The value is None if an input is not one cubic polynomial in the whole piece.
         """
         if not np.isfinite(self.start):
             return None
@@ -126,7 +126,7 @@ class Piece:
 
     @cached_property
     def remembered(self) -> Callable[[float], InputState]:
-        """The inputs at a time, as :meth:`at`: all that looks at a step asks for them at the same times."""
+        """The function :meth:`at` with a memory, as all evaluations of a step ask for the inputs at the same times."""
         return lru_cache(maxsize=REMEMBERED_TIMES)(self.at)
 
     def __getstate__(self) -> dict[str, Any]:
@@ -150,11 +150,11 @@ class MovingInputs:
 
     Args:
         layout: the inputs of the model.
-        motions: what moves; every input that they name is in the layout.
-        defaults: stacked values of what does not move, shape (inputs,), in the units of the inputs.
+        motions: motions of inputs over time; the layout contains every input that they name.
+        defaults: stacked values of inputs that do not move, shape (inputs,), in the units of the inputs.
 
     Raises:
-        SceneError: an input that a motion names is none of the model.
+        SceneError: a motion names an input that the model does not have.
     """
 
     def __init__(self, layout: InputLayout, motions: Sequence[InputMotion], defaults: FloatArray) -> None:
@@ -174,11 +174,11 @@ class MovingInputs:
         return self.at(0.0)
 
     def at(self, t: float) -> InputState:
-        """The inputs at a time; where they jump, their limits from later times."""
+        """Inputs at a time; at a jump, their limits from later times."""
         return self._piece(t, np.inf, slack=0.0).at(t)
 
     def pieces(self, duration: float) -> list[Piece]:
-        """Spans of time in which all inputs are smooth, one after the other from 0 to the duration (s)."""
+        """Cut the time from 0 to the duration (s) into consecutive spans in which all inputs are smooth."""
         slack = SAME_TIME * duration
         weak_of_paths = [path.weak for path in self._paths]
         strong = []
@@ -200,14 +200,14 @@ class MovingInputs:
         return pieces
 
     def breaks(self, duration: float) -> list[Break]:
-        """Breaks of the inputs from 0 to the duration (s), in the order of time: the inputs rest before 0."""
+        """Breaks of the inputs from 0 to the duration (s), in order of time; the inputs rest before 0."""
         found = self._breaks_at_start()
         for motion, path in zip(self._motions, self._paths, strict=True):
             found += [Break(motion.input, time, order) for time, order in path.breaks if 0.0 < time < duration]
         return sorted(found, key=lambda entry: (entry.time, entry.order))
 
     def jumps(self, duration: float) -> list[Break]:
-        """Times from 0 to the duration (s) at which the value of an input itself jumps: loads that act suddenly."""
+        """Breaks from 0 to the duration (s) at which the value of an input itself jumps: sudden loads."""
         return [entry for entry in self.breaks(duration) if entry.order == 0]
 
     def _breaks_at_start(self) -> list[Break]:
@@ -241,12 +241,12 @@ def _refuse_unknown(layout: InputLayout, motions: Sequence[InputMotion]) -> None
 
 
 class _Path(ABC):
-    """The share of one motion in its input, over time."""
+    """The contribution of one motion to its input, over time."""
 
     @property
     @abstractmethod
     def breaks(self) -> tuple[tuple[float, int], ...]:
-        """Times at which it is not smooth (s), each with the order of the first derivative that jumps."""
+        """Times at which the path is not smooth (s), each with the order of the first derivative that jumps."""
 
     @property
     def weak(self) -> frozenset[float]:
@@ -255,7 +255,7 @@ class _Path(ABC):
 
     @abstractmethod
     def within(self, start: float, end: float) -> _Path:
-        """The path with its limits from within at both ends of a span of time without break inside."""
+        """Return the path on a span of time without breaks inside, with limits from within at both ends."""
 
     @abstractmethod
     def at(self, t: float) -> FloatArray:
@@ -266,13 +266,13 @@ class _Path(ABC):
         """Values at T times, shape (T, entries)."""
 
     def coefficients_about(self, origin: float) -> FloatArray | None:
-        """Coefficients of 1, s, s², s³ with s = t − origin, shape (4, entries); None where it is no such polynomial."""
+        """Coefficients of 1, s, s², s³ with s = t − origin, shape (4, entries); None if the path is not cubic."""
         return None
 
 
 @dataclass(frozen=True)
 class _Wave(_Path):
-    """constant + sine · sin(ω t + φ) + cosine · cos(ω t + φ), shape (entries,) each."""
+    """The wave constant + sine · sin(ω t + φ) + cosine · cos(ω t + φ), shape (entries,) each."""
 
     constant: FloatArray
     sine: FloatArray
@@ -307,11 +307,11 @@ class _Table(_Path):
 
     Attributes:
         knots: ascending times, shape (k,), s.
-        origins: time that each segment is written about, shape (k + 1,), s.
-        coefficients: of 1, s, s², s³ with s = t − origin, shape (k + 1, 4, entries).
-        breaks_at: times at which it is not smooth, with their orders.
+        origins: time origin of each segment, shape (k + 1,), s.
+        coefficients: coefficients of 1, s, s², s³ with s = t − origin, shape (k + 1, 4, entries).
+        breaks_at: times at which the table is not smooth, with their orders.
         first: index of the first segment that may be evaluated.
-        last: index of the last one.
+        last: index of the last segment that may be evaluated.
     """
 
     knots: FloatArray
@@ -327,7 +327,7 @@ class _Table(_Path):
 
     @property
     def weak(self) -> frozenset[float]:
-        """Where the acceleration has a kink, and kinks of the path itself if they are many; never a jump."""
+        """Times at which the acceleration jumps, and kinks of the path itself if they are many; never its jumps."""
         kinks = [time for time, order in self.breaks_at if order == 1]
         records = kinks if len(kinks) > MOST_CUTS else []
         return frozenset([*records, *(time for time, order in self.breaks_at if order > 2)])
@@ -369,7 +369,7 @@ class _Table(_Path):
 
 @lru_cache(maxsize=16)
 def _path_of(motion: InputMotion, degrees: int) -> _Path:
-    """The path of a motion of an input with so many Legendre coefficients; every level of a search asks."""
+    """Make the path of an input with so many Legendre coefficients; it is kept for further levels of a search."""
     if motion.is_table:
         return _table_of(motion)
     # A wave without frequency is refused where the scene is read.
@@ -401,7 +401,7 @@ def _table_of(motion: InputMotion) -> _Table:
 
 
 def _cubic_breaks(knots: FloatArray, values: FloatArray) -> list[tuple[float, int]]:
-    """A spline has continuous accelerations between its ends; beyond them it rests."""
+    """Breaks of a spline with the given values at knots: its ends alone, as accelerations between them are smooth."""
     if not np.any(np.ptp(values, axis=0)):
         return []
     inside = [(time, 3) for time in knots[1:-1].tolist()]

@@ -1,7 +1,7 @@
-"""Models of motions: models of the same rods share their functions, however their inputs move and for how long.
+"""Models of motions, whose functions are shared by models of equal rods, whatever their inputs and duration.
 
-To write the functions of a small model takes longer than to step it through a second. The models that were asked for
-last are kept, so that a later motion of the same rods, or the next part of a long one, writes none.
+To write the functions of a small model takes longer than to step it through a second. The latest models are kept, so
+that a later motion of equal rods, or the next part of a long one, writes none.
 """
 
 from __future__ import annotations
@@ -15,23 +15,23 @@ from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene
 
 MOST_KEPT = 24
-"""Models whose functions are kept: models of a few searches for modes, in motion and at rest."""
+"""Number of models that are kept, enough for a few searches for modes, in motion and at rest."""
 
 
 def moving_model(scene: Scene, discretisation: Mapping[str, Discretisation]) -> Model:
-    """The model of a scene for a motion.
+    """Return the model of a scene for a motion.
 
     Args:
-        scene: with the inputs of its motions free.
-        discretisation: of every rod.
+        scene: the scene, with the inputs of its motions free.
+        discretisation: discretisation of every rod.
     """
     return _sharing(scene, discretisation, moving=True)
 
 
 def model_at_rest(model: Model) -> Model:
-    """The model of statics on the discretisation of a model for a motion: free bases are clamped, and no unknowns.
+    """Return the model of statics on the discretisation of a model for a motion: free bases are clamped.
 
-    Its rods do not touch each other exactly, which no equilibrium knows.
+    Exact contact between its rods is left out, because statics does not have it.
     """
     if model.discrete.scaling is not None:
         return model.changed(lambda scene: scene.without_exact_rods().held())
@@ -39,7 +39,7 @@ def model_at_rest(model: Model) -> Model:
 
 
 def _sharing(scene: Scene, discretisation: Mapping[str, Discretisation], *, moving: bool) -> Model:
-    """A model without parameters that shares constants and functions with models of the same rods."""
+    """Return a model without parameters that shares constants and functions with models of equal rods."""
     kept = _kept(scene.of_equations(), tuple(discretisation.items()), moving)
     model = Model(kept.discrete.told_as(scene))
     share_functions(model, kept)
@@ -48,5 +48,5 @@ def _sharing(scene: Scene, discretisation: Mapping[str, Discretisation], *, movi
 
 @lru_cache(maxsize=MOST_KEPT)
 def _kept(scene: Scene, discretisation: tuple[tuple[str, Discretisation], ...], moving: bool) -> Model:
-    """A model by all that its functions depend on."""
+    """Return a model by all data on which its functions depend."""
     return build(scene, dict(discretisation), moving=moving)

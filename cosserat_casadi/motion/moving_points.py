@@ -1,7 +1,7 @@
 """World positions of points of rods and bodies as functions of the unknowns and inputs of a model, with derivatives.
 
-Rods of assemblies and free rods are no special case: a point moves with the strains of its rod and with the pose of its
-base, whichever of the two are unknowns.
+Rods of assemblies and free rods need no special treatment: a point moves with the strains of its rod and the pose of
+its base, as far as these are unknowns.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries, Repeate
 
 
 class MovingPoints:
-    """World positions of some points, with what their derivatives are made of.
+    """World positions of some points, with the functions of their derivatives.
 
     Args:
         model: the model, built for a motion.
-        placed: the positions in a system, 3×M.
-        name: of the points in C.
-        libraries: shared objects that have :attr:`in_iterations` and :attr:`in_derivatives`.
-        shares: unit of the work of forces on the points over the unit of each balance, shape (n,); None where the
-            points move with unknowns whose balances have that unit.
+        placed: function of a system ↦ positions, 3×M.
+        name: name of the points in C.
+        libraries: shared objects that contain :attr:`in_iterations` and :attr:`in_derivatives`.
+        shares: energy unit of forces on the points over the unit of each balance, shape (n,); None if both are equal
+            for all unknowns that move the points.
     """
 
     def __init__(
@@ -55,14 +55,14 @@ class MovingPoints:
         self.shares = shares
 
     def in_balances(self, by_unknowns: FloatArray) -> FloatArray:
-        """Forces on the points, or their derivatives, in units of the balances, shape (n,) or (n, n)."""
+        """Scale generalised forces on the points, or their derivatives, to the units of balances, (n,) or (n, n)."""
         if self.shares is None:
             return by_unknowns
         return (by_unknowns.T * self.shares).T
 
     @property
     def in_iterations(self) -> list[ca.Function]:
-        """Positions, and the derivative of their weighted sum: iterations ask for them, and guards of every step."""
+        """Functions that iterations and guards call: positions, and the derivative of their weighted sum."""
         positions, _, gradient = self._written
         return [
             ca.Function(f"{self._name}_positions", self._symbols[:2], [positions]),
@@ -71,7 +71,7 @@ class MovingPoints:
 
     @property
     def velocities(self) -> ca.Function:
-        """Velocities of the points, of (x, inputs, v, rate), which steps of given length ask for."""
+        """(x, inputs, v, rate) ↦ velocities of the points, for steps of given size."""
         x, inputs, _ = self._symbols
         v, rate = ca.MX.sym("v", x.shape[0]), ca.MX.sym("rate", inputs.shape[0])
         moved = ca.jtimes(self._written[0], x, v) + ca.jtimes(self._written[0], inputs, rate)
@@ -79,7 +79,7 @@ class MovingPoints:
 
     @property
     def in_derivatives(self) -> list[ca.Function]:
-        """Derivatives of the positions, and second derivatives of their weighted sum, column after column."""
+        """Functions for Jacobians: derivative of the positions, and second one of their weighted sum, by columns."""
         positions, _, gradient = self._written
         first, second = (ca.densify(ca.jacobian(part, self._symbols[0])) for part in (positions, gradient))
         return [
@@ -94,11 +94,11 @@ class MovingPoints:
 
     @cached_property
     def in_law(self) -> Held:
-        """The points as the law of contact without friction asks for them."""
+        """Record of the points for the contact law in C without friction."""
         return self._record({"positions": function_record(self._positions), "gradient": function_record(self.gradient)})
 
     def in_rubbing_steps(self, libraries: Libraries) -> Held:
-        """The points as steps with friction ask for them, by functions of shared objects or by programs."""
+        """Record of the points for steps in C with friction, with functions of shared objects or programs."""
         positions, gradient = self.in_iterations
         of_iterations = {"positions": positions, "velocities": self.velocities, "gradient": gradient}
         records = {name: called_in_c(function, libraries.residual) for name, function in of_iterations.items()}
@@ -107,7 +107,7 @@ class MovingPoints:
         return self._record(records | {"hessian": by_unknowns})
 
     def _record(self, functions: Mapping[str, Held]) -> Held:
-        """The record of the points with the records of their functions."""
+        """Make the record of the points with the records of their functions."""
         x, inputs, _ = self._symbols
         held = Held(PointsRecord(self.count, x.shape[0], inputs.shape[0]))
         for name, function in functions.items():
@@ -118,7 +118,7 @@ class MovingPoints:
 
     @cached_property
     def in_steps(self) -> dict[str, ca.Function]:
-        """Functions that steps in C ask for, by name.
+        """Functions that steps in C call, by name.
 
         Positions and the derivative of their weighted sum as :attr:`in_iterations`; velocities, of (x, inputs, v,
         rate); second derivatives of the sum as :attr:`in_derivatives`; and, where inputs move the points, derivatives
@@ -145,35 +145,35 @@ class MovingPoints:
 
     @cached_property
     def gradient(self) -> RepeatedCall:
-        """(x, inputs, weights) ↦ derivative of the weighted sum of the positions with the unknowns, shape (n,)."""
+        """(x, inputs, weights) ↦ derivative of the weighted sum of positions by the unknowns, shape (n,)."""
         return repeated(self.in_iterations[1], self._libraries.residual)
 
     def positions(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
-        """The positions, shape (M, 3), m; several contacts and guards ask for them at one state."""
+        """Positions of the points, shape (M, 3), m; the last result is kept for other contacts and guards."""
         at = [np.ascontiguousarray(values, dtype=float) for values in (x, inputs)]
         called("known_positions", self.in_law.address, *(values.ctypes.data for values in at))
         return self._positions.results[0].reshape(-1, 3).copy()
 
     @cached_property
     def by_inputs(self) -> RepeatedCall:
-        """(x, inputs, weights) ↦ derivative of the weighted sum of the positions with the inputs, shape (m,)."""
+        """(x, inputs, weights) ↦ derivative of the weighted sum of positions by the inputs, shape (m,)."""
         derivative = ca.densify(ca.gradient(self._written[1], self._symbols[1]))
         return RepeatedCall(ca.Function("by_inputs", self._symbols, [derivative]))
 
     def straight_on(
         self, x: FloatArray, inputs: FloatArray, v: FloatArray, rate: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Velocities and accelerations of the points while unknowns and inputs change evenly, shape (M, 3) each."""
+        """Velocities, and accelerations at constant rates of unknowns and inputs, of the points, shape (M, 3) each."""
         first, second = np.split(self._straight_on(x, inputs, v, rate), 2)
         return first.reshape(-1, 3), second.reshape(-1, 3)
 
     def hessian(self, x: FloatArray, inputs: FloatArray, weights: FloatArray) -> FloatArray:
-        """Second derivative of the weighted sum of the positions with the unknowns, shape (n, n)."""
+        """Second derivative of the weighted sum of positions with respect to the unknowns, shape (n, n)."""
         stacked = self._hessian(x, inputs, weights)
         return stacked.reshape(len(x), len(x))
 
     def jacobian(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
-        """Derivative of the positions with the unknowns, shape (M, 3, n)."""
+        """Derivative of the positions with respect to the unknowns, shape (M, 3, n)."""
         stacked = self._jacobian(x, inputs)
         return stacked.reshape(len(x), -1, 3).transpose(1, 2, 0)
 
@@ -199,20 +199,20 @@ class MovingPoints:
 
 
 def stacked_size(model: Model) -> int:
-    """Number of inputs and, behind them, parameters of a model."""
+    """Number of inputs and parameters of a model together."""
     return model.inputs.size + model.parameters.size
 
 
 def in_stacked_inputs(
     model: Model, x: ca.MX, inputs: ca.MX, quantities: Callable[[System], list[Matrix]]
 ) -> list[Matrix]:
-    """Quantities of a system, written in the unknowns and in the stacked inputs with parameters behind them.
+    """Quantities of a system as expressions of the unknowns and of the stacked inputs with appended parameters.
 
     Args:
         model: the model, which may have parameters.
         x: unknowns, n×1.
-        inputs: of :func:`stacked_size` rows.
-        quantities: the system ↦ the quantities.
+        inputs: stacked inputs and parameters, with :func:`stacked_size` rows.
+        quantities: function of a system ↦ quantities.
     """
     if not model.parameters.size:
         return quantities(System(model.discrete, Arguments(x, inputs)))
@@ -224,9 +224,9 @@ def in_stacked_inputs(
 
 
 def nodes_of(model: Model, rod: str, libraries: Libraries = INTERPRETED, carrier: str | None = None) -> MovingPoints:
-    """The nodes of a rod, in the axes of a body that carries an obstacle, or of the world where that is None.
+    """Nodes of a rod, in the axes of the body that carries an obstacle, or of the world if ``carrier`` is None.
 
-    What pushes points that are seen from a body pushes the body the other way.
+    A force on points in the axes of a body has its reaction on the body.
     """
     name = f"rod_{[record.name for record in model.scene.rods].index(rod)}"
     if carrier is None:
@@ -237,7 +237,7 @@ def nodes_of(model: Model, rod: str, libraries: Libraries = INTERPRETED, carrier
 
 
 def nodes_of_both(model: Model, rods: tuple[str, str], libraries: Libraries = INTERPRETED) -> MovingPoints:
-    """The nodes of a rod, and those of another rod behind them; work is in units of the first rod's."""
+    """Nodes of a rod, followed by those of another rod; the energy unit is the one of the first rod."""
     numbers = [[record.name for record in model.scene.rods].index(rod) for rod in rods]
     name = "rods_{}_{}".format(*numbers)
     shares = model.discrete.rods[rods[0]].energy_unit / model.discrete.unknowns.units

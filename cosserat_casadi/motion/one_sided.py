@@ -1,10 +1,10 @@
-"""Cables that may go slack and stops of joints, in motion: open or closed for a while, and the changes in between.
+"""Cables that may go slack and stops of joints in motion: open or closed between events, and the events themselves.
 
-A slack cable and a stop off its joint are open and have no push. A taut cable and a stop at its joint are closed and
-leave no gap: between these the equations are smooth, and the corner that statics rounds is never passed. A pair whose
-push comes to zero opens. A gap that comes to zero closes: an impact takes the velocity that would go on, and the
-energy that goes with it. A cable does not rebound; a stop gives back its coefficient of restitution, until a bounce is
-as low as bounces of exact contact that are not followed. An elastic pair takes nothing: its push grows from zero.
+A slack cable, or a stop that its joint has not reached, is open and has no push. A taut cable, or a stop at its joint,
+is closed and has no gap. Between events the equations are smooth, without the corner that statics rounds. A pair whose
+push comes to zero opens. A gap that comes to zero closes: an impact takes the closing velocity and its energy. A cable
+does not rebound; a stop returns its coefficient of restitution, unless the bounce is as low as bounces of exact contact
+that are not followed. An elastic pair loses no energy: its push grows from zero.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ from cosserat_casadi.numerics.guards import THROUGH, Guards
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
 Closed = tuple[bool, ...]
-"""Whether each cable that may go slack is taut, and then whether each stop holds its joint."""
+"""Whether each cable that may go slack is taut, followed by whether each stop holds its joint."""
 
 TOUCHING = 1e-9
-"""Gap, relative to the rod's length or in rad, from which on a pair counts as closed where a motion starts."""
+"""Gap, over the rod's length or in rad, up to which a pair counts as closed at the start of a motion."""
 
 
 APART = 1e30
@@ -44,17 +44,17 @@ APART = 1e30
 
 @dataclass(frozen=True)
 class Pair:
-    """A cable or a stop: its push, an unknown, is zero where its gap is open, and never below.
+    """A cable or a stop: its push, an unknown, is never negative, and zero while its gap is open.
 
     Attributes:
-        name: of the cable or the joint.
-        row: row of its equation, which is the entry of its push.
+        name: name of the cable or the joint.
+        row: row of its equation, which equals the entry of its push in the unknowns.
         softness: gap that a unit of its push closes.
-        rigid: whether it takes velocities when it closes; an elastic one yields.
-        side: of the stop, as in the scene; empty of a cable.
+        rigid: whether it takes velocities when it closes; an elastic pair yields.
+        side: side of the stop, as in the scene; empty for a cable.
         unit: unit of its push, N or N m.
-        restitution: share of its speed that an impact leaves.
-        coordinate: entry of the joint's coordinate; of a cable none, −1.
+        restitution: coefficient of restitution of an impact.
+        coordinate: entry of the joint's coordinate in the unknowns; −1 for a cable.
         sign: sign of the gap's rate for a positive rate of the coordinate.
     """
 
@@ -71,13 +71,13 @@ class Pair:
 
 @dataclass(frozen=True)
 class Settled(Generic[HeldPhases]):
-    """How a motion goes on once it is decided which pairs are closed.
+    """Continuation of a motion after it is decided which pairs are closed.
 
     Attributes:
-        onward: the motion with these pairs.
-        closed: which are closed.
-        v: velocities after the pair that closes has taken its impact, shape (n,), 1/s.
-        lost: energy that it took, J.
+        onward: restart of the motion with these pairs.
+        closed: whether each pair is closed.
+        v: velocities after the impact of the closing pair, shape (n,), 1/s.
+        lost: energy lost in that impact, J.
         events: changes of pairs.
     """
 
@@ -105,7 +105,7 @@ class OneSided:
 
     @cached_property
     def pairs(self) -> list[Pair]:
-        """Pairs of the cables that may go slack, then of the stops."""
+        """Pairs of the cables that may go slack, followed by pairs of the stops."""
         return [
             *(self._of_cable(cable) for cable in self.cables),
             *(self._of_stop(stop) for stop in self.model.discrete.stops),
@@ -133,16 +133,16 @@ class OneSided:
 
     @cached_property
     def rows(self) -> list[int]:
-        """Rows of their equations, which are the entries of their pushes."""
+        """Rows of the equations of the pairs, which equal the entries of their pushes."""
         return [pair.row for pair in self.pairs]
 
     def equations(self, plain: MotionEquations, piece: Piece, phases: Closed) -> MotionEquations:
-        """Equations of motion in which each pair is either closed or open.
+        """Make equations of motion in which each pair is either closed or open.
 
         Args:
             plain: equations of the model.
-            piece: piece of its inputs.
-            phases: which pairs are closed.
+            piece: piece of the inputs.
+            phases: whether each pair is closed.
         """
         if not self.pairs:
             return plain
@@ -167,7 +167,7 @@ class OneSided:
         return replace(plain, residual=residual, jacobians=jacobians)
 
     def arranged(self, plain: MotionEquations, piece: Piece, phases: Closed) -> tuple[MotionEquations, Guards | None]:
-        """The equations of motion with these pairs closed, and guards that stay at zero or above while they hold."""
+        """Make the equations of motion with these pairs closed, and guards that are not negative while they last."""
         return self.equations(plain, piece, phases), self.guards(piece, phases)
 
     def settling(self, plain: MotionEquations, piece: Piece, phases: Closed) -> None:
@@ -175,7 +175,7 @@ class OneSided:
         return
 
     def guards(self, piece: Piece, phases: Closed) -> Guards | None:
-        """Gaps of open pairs and pushes of closed ones, which stay at zero or above; None without pairs."""
+        """Make guards, gaps of open pairs and pushes of closed ones, which are not negative; None without pairs."""
         if not self.pairs:
             return None
 
@@ -187,7 +187,7 @@ class OneSided:
         return values
 
     def first_phases(self, x: FloatArray, inputs: FloatArray) -> Closed:
-        """Which pairs are closed at a state."""
+        """Determine which pairs are closed at a state."""
         if not self.pairs:
             return ()
         return tuple(bool(gap <= TOUCHING) for gap in self.gaps(x, inputs))
@@ -201,15 +201,15 @@ class OneSided:
         guard: int | None,
         interval: float,
     ) -> Restart[Closed]:
-        """How a motion goes on, or begins.
+        """Restart a motion after an event, or start it.
 
         Args:
             plain: equations of the model.
             piece: of its inputs.
             at: state before the event.
-            phases: which pairs are closed before it.
-            guard: number of the pair whose guard came to zero; None for a start, or another piece of the inputs.
-            interval: time after it in which the equations are smooth, s.
+            phases: whether each pair is closed before the event.
+            guard: number of the pair whose guard came to zero; None at a start, or at the start of another piece.
+            interval: time after the event in which the equations are smooth, s.
         """
 
         def begin(closed: Closed, v: FloatArray) -> Restart[Closed]:
@@ -230,16 +230,16 @@ class OneSided:
         *,
         told: bool,
     ) -> Settled[HeldPhases]:
-        """Which pairs are closed after an event, or at the begin of a motion, and how it goes on with them.
+        """Decide which pairs are closed after an event, or at the start of a motion, and continue the motion with them.
 
         Args:
             plain: equations of the model.
             piece: of its inputs.
             at: state before the event, in the unknowns of the model.
             phases: which pairs are closed before it.
-            guard: number of the pair whose guard came to zero; None where it was none.
-            interval: time after it in which the equations are smooth, s.
-            begin: closed pairs and velocities ↦ how the motion goes on with them.
+            guard: number of the pair whose guard came to zero; None if no guard did.
+            interval: time after the event in which the equations are smooth, s.
+            begin: function of closed pairs and velocities ↦ restart of the motion.
             told: whether pairs that open are events.
         """
         v = at.v
@@ -275,7 +275,7 @@ class OneSided:
         return Settled(onward, phases, v, lost, tuple(events))
 
     def event(self, number: int, time: float, *, closes: bool, lost: float = 0.0, impulse: float = 0.0) -> ContactEvent:
-        """A pair that closes or opens, with the energy that its impact took, J, and its impulse without unit."""
+        """Event of a pair that closes or opens, with the energy lost, J, and the dimensionless impulse."""
         pair = self.pairs[number]
         words = ("stop_hit", "stop_left") if pair.side else ("taut", "slack")
         kind = words[0] if closes else words[1]
@@ -284,7 +284,7 @@ class OneSided:
     def _after_impact(
         self, plain: MotionEquations, piece: Piece, at: Instant, phases: Closed, guard: int, interval: float
     ) -> tuple[FloatArray, Closed, float]:
-        """Velocities after a pair has closed, which are closed then, and the impulse of it: impulses only push."""
+        """Velocities after a pair has closed, the pairs that are closed then, and its impulse; impulses only push."""
         # What the smallest push that counts does in that time is rounding.
         rounding = THROUGH * interval
         while True:
@@ -307,7 +307,7 @@ class OneSided:
         return rebounding, _changed(phases, [guard]), (1.0 + pair.restitution) * impulse
 
     def _soon_back(self, instant: Instant, phases: Closed, piece: Piece) -> list[int]:
-        """Stops that joints leave and would be back at without having been off them by more than the least bounce."""
+        """Stops that joints leave and would meet again without having risen above the least bounce."""
         back = []
         gaps = self.gaps(instant.x[: self.model.size], piece.at(instant.time).value) if self.pairs else ()
         for k, (pair, gap) in enumerate(zip(self.pairs, gaps, strict=True)):
@@ -335,12 +335,12 @@ class OneSided:
 
     @cached_property
     def softness(self) -> FloatArray:
-        """Gap that a unit of each push closes, shape (m,)."""
+        """Gaps that units of the pushes close, shape (m,)."""
         return np.array([pair.softness for pair in self.pairs])
 
     @cached_property
     def gaps(self) -> RepeatedCall:
-        """(x, inputs) ↦ sag of each cable over the rod's length, and way of each joint to its stop, shape (m,)."""
+        """(x, inputs) ↦ sag of each cable over the rod's length, and distance of each joint from its stop, (m,)."""
         return RepeatedCall(ca.Function("gaps", self._symbols, [self._gap_rows]))
 
     @cached_property
@@ -350,9 +350,9 @@ class OneSided:
 
     @cached_property
     def gaps_and_gradients(self) -> ca.Function:
-        """(x, inputs) ↦ :attr:`gaps`, then their gradients by the n unknowns, column after column, (m + m n)×1.
+        """(x, inputs) ↦ :attr:`gaps`, then their derivatives by the n unknowns, column after column, (m + m n)×1.
 
-        The gap of a rigid pair is :data:`APART`: steps with friction have rigid pairs among what touches.
+        The gap of a rigid pair is :data:`APART`: steps with friction treat rigid pairs as contacts.
         """
         x, _ = self._symbols
         split = ca.vertsplit(self._gap_rows)
@@ -366,7 +366,7 @@ class OneSided:
 
     @cached_property
     def _gap_rows(self) -> Matrix:
-        """Sag of each cable over the length of its rod, then the way of each joint to its stop."""
+        """Sag of each cable over the length of its rod, then distance of each joint from its stop, m×1."""
         x, inputs = self._symbols
         system = System(self.model.discrete, Arguments(x, inputs))
         sags = [system.actuators.cable_lengths[cable.tendon.name].sag for cable in self.cables]
@@ -375,13 +375,13 @@ class OneSided:
 
 
 def sags_by_cable(model: Model, x: FloatArray, inputs: FloatArray, p: FloatArray | None = None) -> dict[str, float]:
-    """Sags of every cable of given length that does not stretch, over the rod's length; negative if too short.
+    """Sag of each inextensible cable of given length, over the rod's length; negative if the cable is too short.
 
     Args:
         model: the model.
         x: unknowns, shape (size,).
-        inputs: stacked, shape (model.inputs.size,).
-        p: stacked parameters of a model that has some; else None.
+        inputs: stacked inputs, shape (model.inputs.size,).
+        p: stacked parameters; None for a model without parameters.
     """
     cables = [cable.tendon for cable in model.discrete.cables if getattr(cable.tendon, "axial_stiffness", None) is None]
     if not cables:
@@ -394,5 +394,5 @@ def sags_by_cable(model: Model, x: FloatArray, inputs: FloatArray, p: FloatArray
 
 
 def _changed(phases: Closed, numbers: Sequence[int]) -> Closed:
-    """Which pairs are closed after some pairs have changed."""
+    """Toggle some pairs between open and closed."""
     return tuple(closed != (k in numbers) for k, closed in enumerate(phases))

@@ -1,7 +1,7 @@
-"""A long motion in parts, each of which is written to a file and then forgotten.
+"""A long motion in parts, each of which is written to a file and then freed from memory.
 
-Memory holds one part: its steps, and steps of the motions that tell its error. A part goes on where the last one ended,
-on the modes that were chosen in the first one; the error covers the whole so far.
+Memory holds one part: its steps, and the steps of the motions that tell its error. A part continues the last one, on
+the modes that were chosen in the first one; the error covers the whole motion so far.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from cosserat_casadi.motion.trajectory import Motion, MotionProgress
 from cosserat_casadi.scene.simulation import Simulation
 
 GOING_ON = (".json", ".npz")
-"""Suffixes of files that a motion goes on from."""
+"""Suffixes of files from which a motion can continue."""
 
 Simulated = Callable[[StartOfMotion, Simulation, Tell | None], Motion]
 """(start, simulation, progress) ↦ the motion from the start to the duration of the simulation."""
@@ -34,21 +34,21 @@ def simulate_in_parts(
     start: StartOfMotion = None,
     progress: Tell | None = None,
 ) -> Motion:
-    """Simulate part by part, and write each to a file; a part that ends early is the last.
+    """Simulate part by part, and write each part to a file; a part that ends early is the last one.
 
     Args:
-        simulated: simulates one part.
-        simulation: of the whole motion; each row of its result is in the part that reaches it.
-        output: file, whose name gets the number of the part: ``out.npz`` becomes ``out-0001.npz``.
-        length: of a part, s.
-        start: as of a motion.
-        progress: told of every step, with the duration of the whole motion.
+        simulated: function that simulates one part.
+        simulation: settings of the whole motion; each row of its result is in the part that reaches it.
+        output: file, to whose name the number of the part is added: ``out.npz`` becomes ``out-0001.npz``.
+        length: length of a part, s.
+        start: start of the motion.
+        progress: callback after every step, with the duration of the whole motion.
 
     Returns:
         the last part.
 
     Raises:
-        SceneError: the length is no time, or the file is none that a motion goes on from.
+        SceneError: the length is not a positive time, or a motion cannot continue from a file of that kind.
     """
     path = Path(output)
     check_parts(path, length)
@@ -72,7 +72,7 @@ def simulate_in_parts(
 
 
 def check_parts(output: Path | None, length: float) -> None:
-    """Refuse parts that have no length, or no file to go on from.
+    """Refuse parts without a positive length, or without a file from which a motion can continue.
 
     Raises:
         SceneError: with all that is wrong.
@@ -87,7 +87,7 @@ def check_parts(output: Path | None, length: float) -> None:
 
 
 def _whole(progress: Tell, duration: float) -> Tell:
-    """A function that tells the progress of a part as progress of the whole motion."""
+    """Make a callback that reports the progress of a part as progress of the whole motion."""
 
     def tell(part: MotionProgress) -> None:
         progress(replace(part, duration=duration))

@@ -1,4 +1,4 @@
-"""Poses of sections and bodies, and the states of actuators, at many unknowns at once."""
+"""Poses of sections and bodies, and states of actuators, at many times at once."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 
 AT_ONCE = 1024
-"""Times whose nodes are held in memory together: all fields of the nodes are several times as large as the sections."""
+"""Number of times whose nodes are in memory together: fields at nodes are much larger than the wanted sections."""
 
 
 class Poses(NamedTuple):
@@ -33,7 +33,7 @@ class ActuatorStates(NamedTuple):
 
     Attributes:
         effort: tension (N), pressure (Pa), or moment (N m) or force (N) of a joint, shape (T,).
-        conjugate: what the effort does work on: length (m), volume (m³), angle (rad) or displacement (m), shape (T,).
+        conjugate: length (m), volume (m³), angle (rad) or displacement (m) on which the effort works, shape (T,).
     """
 
     effort: FloatArray
@@ -49,14 +49,14 @@ def poses_of(function: ca.Function, x: FloatArray, inputs: FloatArray) -> Poses:
         inputs: stacked inputs there, shape (T, model.inputs.size).
 
     Returns:
-        shapes (T, 3) and (T, 4).
+        the poses, of shapes (T, 3) and (T, 4).
     """
     position, quaternion, _ = evaluated(function, x, inputs)
     return Poses(position[:, :, 0], quaternion[:, :, 0])
 
 
 def section_poses(model: Model, rod: str, X: npt.ArrayLike, x: FloatArray, inputs: FloatArray) -> Poses:
-    """Poses of k sections of a rod: the interpolant through the nodes, as of a solution.
+    """Poses of k sections of a rod by the interpolant through the nodes, as in a solution.
 
     Args:
         model: the model.
@@ -66,7 +66,7 @@ def section_poses(model: Model, rod: str, X: npt.ArrayLike, x: FloatArray, input
         inputs: stacked inputs there, shape (T, model.inputs.size).
 
     Returns:
-        shapes (T, k, 3) and (T, k, 4), or (T, 3) and (T, 4) of one abscissa.
+        the poses, of shapes (T, k, 3) and (T, k, 4), or (T, 3) and (T, 4) for one abscissa.
     """
     # The nodes are asked for once a time, and the sections follow by one matrix: less than a call for each section.
     interpolation = model.discrete.rods[rod].grid.interpolation_matrix(X)

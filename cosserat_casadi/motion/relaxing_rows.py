@@ -1,9 +1,9 @@
 """Equations of Maxwell branches in small motions about rest, integrated once in time.
 
-A branch moves by τ ẅ + ẇ − ξ̇ = 0 (rod/relaxation.py), which leaves open how far w is from ξ. Of motions about rest,
-where its spring is free, the integral is τ ẇ + w − ξ = 0: no rigid motions come in by it. In units of its spring's
-stiffness, and taken out of the balance of the strains, it makes stiffness and damping symmetric, as for a spring and a
-dashpot.
+A branch obeys τ ẅ + ẇ − ξ̇ = 0 (rod/relaxation.py), which leaves the offset of w from ξ undetermined. For motions about
+rest, where its spring is free, the integral is τ ẇ + w − ξ = 0, which introduces no rigid motions. Scaled by the
+stiffness of its spring, and subtracted from the balance of the strains, it makes stiffness and damping symmetric, as
+for a spring and a dashpot.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ class BranchRows:
     """The rows of one branch of a rod.
 
     Attributes:
-        strains: rows of the rod's strains.
-        flows: rows of the branch.
-        spring: stiffness of its spring, without unit, shape (n, n).
+        strains: rows of the strains of the rod.
+        flows: rows of the flow of the branch.
+        spring: dimensionless stiffness of the spring, shape (n, n).
     """
 
     strains: slice
@@ -34,7 +34,7 @@ class BranchRows:
 
 
 def branch_rows(discrete: DiscreteScene, damping: FloatArray, mass: FloatArray) -> list[BranchRows]:
-    """The branches of all rods.
+    """Find the rows of the branches of all rods.
 
     Args:
         discrete: the scene in motion.
@@ -55,11 +55,11 @@ def branch_rows(discrete: DiscreteScene, damping: FloatArray, mass: FloatArray) 
 def integrated(
     branches: Sequence[BranchRows], matrices: Sequence[FloatArray]
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Derivatives of the residual by some arguments, by their first and by their second rates, of integrated rows.
+    """Integrate rows of the derivatives of the residual by some arguments, by their rates and by their second rates.
 
     Args:
         branches: branches whose rows are integrated.
-        matrices: the three derivatives, a row for each unknown; the first is zero in rows of branches.
+        matrices: the three derivatives, with a row for each unknown; the first is zero in rows of branches.
     """
     by_value, by_rate, by_acceleration = (matrix.copy() for matrix in matrices)
     for branch in branches:

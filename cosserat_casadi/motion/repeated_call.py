@@ -1,6 +1,6 @@
-"""A CasADi function called over and over: its arguments and its result are arrays that are written in place.
+"""A CasADi function that is called repeatedly, with arrays for arguments and results that are written in place.
 
-A call through matrices takes as long as the residual of a short rod itself.
+An ordinary call with CasADi matrices takes as long as the residual of a short rod itself.
 """
 
 from __future__ import annotations
@@ -21,20 +21,20 @@ from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.maths.typing import FloatArray
 
 MOST_LOADED = 256
-"""Functions of shared objects that a process keeps loaded."""
+"""Number of functions of shared objects that a process keeps loaded."""
 
 
 @dataclass(frozen=True)
 class MachineCode:
-    """A function in a shared object, and the arguments of a call of it in C, as :class:`RepeatedCall` makes it.
+    """A function in a shared object, and the memory of a :class:`RepeatedCall` of it, for calls in C.
 
     Attributes:
-        address: of the function.
+        address: address of the function.
         arguments: addresses of its arguments.
         results: addresses of its results.
-        integers: memory of the function for whole numbers.
-        scratch: memory of the function for real numbers.
-        library: the library that has the function.
+        integers: work memory of the function for integers.
+        scratch: work memory of the function for real numbers.
+        library: the library that contains the function.
         path: path of the library's file.
     """
 
@@ -48,21 +48,21 @@ class MachineCode:
 
 
 class RepeatedCall:
-    """The first results of a function, dense matrices, for dense arguments.
+    """A call of a function with dense arguments, for its first results, which are dense matrices.
 
     Args:
         function: the function.
-        results: how many of its results are wanted.
-        library: shared object that has it, where it is in machine code.
+        results: number of results that are wanted, the first ones.
+        library: shared object that contains the function in machine code; None without one.
 
     Attributes:
         arguments: arrays that the arguments are read from.
         results: matrices that the results are written to.
-        evaluate: reads the arguments and writes the results.
-        code: the function in machine code; None where CasADi's virtual machine runs it.
-        program: of the function, for a loop in C; None where none was written.
-        program_after: gives the program, or None, when a motion has taken so many iterations without one; None where
-            none is to be written.
+        evaluate: function that reads the arguments and writes the results.
+        code: the function in machine code; None if CasADi's virtual machine runs it.
+        program: program of the function for a loop in C; None if none was written.
+        program_after: function of the iterations that a motion has taken without a program ↦ the program, or None if
+            it does not pay yet; None if no program is to be written.
 
     Raises:
         ValueError: an argument or a result is not dense.
@@ -90,16 +90,16 @@ class RepeatedCall:
 
     @property
     def library(self) -> str | None:
-        """The shared object that has the function; None where CasADi's virtual machine runs it."""
+        """The shared object that contains the function; None if CasADi's virtual machine runs it."""
         return None if self.code is None else self.code.path
 
     def __call__(self, *values: FloatArray) -> FloatArray:
-        """The first result, column after column, as an array of shape (n,), for arguments in their order."""
+        """Return the first result, column after column, shape (n,), for arguments in their order."""
         self._evaluated(values)
         return self.results[0].flatten(order="F")
 
     def matrices(self, *values: FloatArray) -> list[FloatArray]:
-        """All results for arguments in their order."""
+        """Return all results for arguments in their order."""
         self._evaluated(values)
         # Column after column, as they are: rows are made of them where they are asked for.
         return [result.copy(order="K") for result in self.results]
@@ -121,11 +121,11 @@ class RepeatedCall:
 
 
 class Libraries(NamedTuple):
-    """Shared objects with the functions of a motion; None where CasADi's virtual machine runs them.
+    """Shared objects with the functions of a motion; None if CasADi's virtual machine runs them.
 
     Attributes:
-        residual: has inverse dynamics, and the functions that every iteration calls.
-        jacobians: has its derivatives, and the other functions that equations are linearised with.
+        residual: shared object with inverse dynamics, and the functions that every iteration calls.
+        jacobians: shared object with its derivatives, and the other functions of linearised equations.
     """
 
     residual: str | None = None
@@ -138,24 +138,24 @@ INTERPRETED = Libraries()
 
 @lru_cache(maxsize=MOST_LOADED)
 def external(name: str, library: str) -> ca.Function:
-    """A function of a shared object, loaded once in a process: a file under the same name has the same contents."""
+    """Load a function of a shared object, once in a process: the name of a file determines its contents."""
     return ca.external(name, library)
 
 
 @lru_cache(maxsize=MOST_LOADED)
 def _loaded(library: str) -> ctypes.CDLL:
-    """A shared object, loaded once in a process: a file under the same name has the same contents."""
+    """Load a shared object, once in a process: the name of a file determines its contents."""
     return ctypes.CDLL(library)
 
 
 def repeated(function: ca.Function, library: str | None, results: int = 1, *, as_scalars: bool = True) -> RepeatedCall:
-    """A call of a function: by its name in a shared object, or, without one, in CasADi's virtual machine.
+    """Make a repeated call of a function: by its name in a shared object, or without one in CasADi's virtual machine.
 
     Args:
         function: the function.
         library: the shared object; None without one.
-        results: how many of its results are wanted.
-        as_scalars: whether the virtual machine runs it as scalars, which takes a tenth to two thirds of the time.
+        results: number of results that are wanted, the first ones.
+        as_scalars: whether the virtual machine runs it in scalars, which takes a tenth to two thirds of the time.
     """
     if library is not None:
         return RepeatedCall(external(function.name(), library), results, library)

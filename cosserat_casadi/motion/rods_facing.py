@@ -1,15 +1,15 @@
-"""A rod in motion that faces another rod: its sections, and the sections of the other rod that are nearest to them.
+"""A rod in motion that may touch another rod: its sections, and the sections of the other rod nearest to them.
 
-A section of the first rod sees the other rod as an obstacle that moves. The gap is the least distance d of the section
-from the other centre line, less both radii: d = |r(X) − s(Y)| with the normal n from s to r. The contact is where the
-gap is least along the first rod too. So the gap is a minimum over both abscissae, or over Y alone where X is held. Its
-gradient with the unknowns is that of d with X and Y held; its second derivative is less by what X and Y slide:
+For a section of the first rod the other rod is a moving obstacle. The gap is the least distance d of the section from
+the other centre line, less both radii: d = |r(X) − s(Y)| with the normal n from s to r. The contact is where the gap is
+least along the first rod too. So the gap is a minimum over both abscissae, or over Y alone if X is fixed. Its gradient
+equals the gradient of d at fixed X and Y; its second derivative is reduced because X and Y slide:
 
-    δ²d − cᵀ M⁻¹ c,   M the second derivatives of d with X and Y, c how its first ones change with the unknowns.
+    δ²d − cᵀ M⁻¹ c,   M = ∂²d/∂(X, Y)², c the derivatives of ∂d/∂(X, Y) with respect to the unknowns.
 
-M is eliminated place by place: Y first, and then X, along which the gap bends as Y slides along.
+M is eliminated one abscissa at a time: Y first, then X, along which the bend of the gap includes the sliding of Y.
 
-Forces on both rods are opposite and on one line: they leave neither a resultant nor a moment.
+Forces on both rods are opposite and collinear: they have neither a resultant nor a moment.
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ class RodGap(SectionGap):
     """A gap between sections of two rods.
 
     Args:
-        memory: both sections as C has written them, shape (gap_size(),).
-        points: number of the points of both rods.
+        memory: both sections as written by C, shape (gap_size(),).
+        points: number of points of both rods.
 
     Attributes:
-        other: the section of the other rod, seen from the section of the first one.
-        other_place: its abscissa.
+        other: the gap at the section of the other rod, with the section of the first rod as obstacle.
+        other_place: abscissa of the section of the other rod.
     """
 
     other_place: float
@@ -50,12 +50,12 @@ class RodGap(SectionGap):
 
     @cached_property
     def own_rows(self) -> Rows:
-        """Weights of the points for the section of the first rod, and for its tangent."""
+        """Weights of the points in the position of the section of the first rod, and in its tangent."""
         return SectionGap(self._memory, self._points).rows
 
     @cached_property
     def rows(self) -> Rows:
-        """Weights of the points for the way from the other section to the first one, and for its change with X."""
+        """Weights of the points in the vector from the other section to the first one, and in its derivative by X."""
         return Rows(self.own_rows.value - self.other.rows.value, self.own_rows.first)
 
     @property
@@ -81,16 +81,16 @@ class RodsFacing(RodFacing):
 
     @property
     def stride(self) -> float:
-        """Longest way of a point of either rod between two looks for contact in steps of given length, m."""
+        """Longest way of a point of either rod between two checks for contact in steps of given size, m."""
         return STRIDE * (min(self.radii) + min(self.other.radii)) / 2.0
 
     @property
     def surfaces(self) -> dict[str, ca.Function]:
-        """No functions of a point tell where the other rod is: its nodes do."""
+        """No functions: the nodes of the other rod define its surface."""
         return {}
 
     def describe(self, held: Held) -> None:
-        """Write elements, how sections follow from nodes, and the other rod into the record."""
+        """Write the elements, the interpolation of sections from nodes, and the other rod into the record."""
         super().describe(held)
         held.point("other", self._other_record())
 
@@ -112,11 +112,11 @@ class RodsFacing(RodFacing):
         return held
 
     def gap(self, memory: FloatArray) -> RodGap:
-        """A gap that C has written, shape (gap_size(),)."""
+        """Read a gap that C has written, shape (gap_size(),)."""
         return RodGap(memory, self.points.count)
 
     def turning(self, by_nodes: FloatArray, gap: SectionGap, *, slides: bool) -> FloatArray:
-        """Second derivative of a gap with the unknowns without the second derivative of the points, shape (n, n)."""
+        """Second derivative of a gap by the unknowns, less the part by second derivatives of the points, (n, n)."""
         assert isinstance(gap, RodGap), "gaps of rods are of two sections"
         moved = np.tensordot(gap.rows.value, by_nodes, 1)
         second = moved.T @ gap.other.curvature @ moved - self._taken(by_nodes, gap, slides=slides)
@@ -125,7 +125,7 @@ class RodsFacing(RodFacing):
     def rates(
         self, x: FloatArray, v: FloatArray, inputs: Sequence[FloatArray], gap: SectionGap, *, slides: bool
     ) -> tuple[float, float]:
-        """Rate of a gap, 1/s, and its second derivative without the part of the accelerations of the unknowns, 1/s²."""
+        """Rate of a gap, 1/s, and its second rate at zero accelerations of the unknowns, 1/s²."""
         assert isinstance(gap, RodGap), "gaps of rods are of two sections"
         value, rate, acceleration = inputs
         velocities, accelerations = self.points.straight_on(x, value, v, rate)
@@ -138,15 +138,15 @@ class RodsFacing(RodFacing):
         return first / self.length, second / self.length
 
     def _taken(self, by_nodes: FloatArray, gap: RodGap, *, slides: bool) -> FloatArray:
-        """Part of the second derivative of the distance that the sliding of both abscissae takes away, cᵀ M⁻¹ c, m.
+        """Reduction cᵀ M⁻¹ c of the second derivative of the distance by the sliding of both abscissae, m.
 
         Args:
-            by_nodes: motion of all points, shape (M, 3, n), or (M, 3) of one motion.
+            by_nodes: motions of all points, shape (M, 3, n), or (M, 3) for one motion.
             gap: the gap.
-            slides: whether the place on the first rod is where the gap is least, and not a given one.
+            slides: whether the place on the first rod is where the gap is least; else it is fixed.
 
         Returns:
-            shape (n, n), or () of one motion.
+            the reduction, shape (n, n), or () for one motion.
         """
         # While both sections are held the distance has the curvature of a ball.
         ball = gap.other.curvature

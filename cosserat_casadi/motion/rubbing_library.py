@@ -67,20 +67,20 @@ OUTCOMES = {
 """Outcome for each status number; a step with another status was not solved."""
 
 KNOWN = 4
-"""Numbers of a contact that is known at the begin: pair, whether it slides, place, gap; as in ``rubbing_begin``."""
+"""Numbers of a known contact at the start: pair, whether it slides, place, gap; as in ``rubbing_begin``."""
 
 HEAD = 4
-"""Numbers at the head of a stretch's row, before the state at its begin; as in ``rubbing_steps.c``."""
+"""Numbers at the head of a stretch's row, before the state at its start; as in ``rubbing_steps.c``."""
 
 FARTHEST = 0.02
 """Way of a place of contact along its rod, over the length, in a stretch of a step of SHORT or more.
 
-A rod that rolls out flat loses energy with the cube of it. It falls with the root of shorter steps, so that this error
-falls faster than they do.
+A rod that rolls out flat loses energy with the cube of this way. The way falls with the square root of shorter steps,
+so that the error by the loss falls faster than the steps.
 """
 
 SHORT = 1e-3
-"""Size of steps, s, below which places go less far in a stretch."""
+"""Size of steps, s, below which the longest way of a place in a stretch is shorter."""
 
 _ONE_AT_A_TIME = threading.RLock()
 """Lock of the motion that takes a step: C has one present model."""
@@ -216,7 +216,7 @@ class RubbingSteps:
         return numbers
 
     def go_on(self, carried: FloatArray) -> bool:
-        """Go on with the memory of another motion; False where it is of no such model."""
+        """Continue with the memory of another motion; return False if it belongs to another model."""
         if carried.shape != (self.sizes.carried,):
             return False
         numbers = np.ascontiguousarray(carried)
@@ -242,7 +242,7 @@ class RubbingSteps:
         return held
 
     def use(self, kernels: StepKernels) -> None:
-        """Make steps call these kernels; functions without machine code become programs where they can."""
+        """Make steps call these kernels; functions without machine code become programs if they can."""
         if kernels.libraries != self._libraries:
             self._libraries = kernels.libraries
             self._share_functions(kernels.libraries)
@@ -325,7 +325,7 @@ def _touch(numbers: FloatArray) -> RubbingTouch:
 
 
 def _room(count: int) -> int:
-    """The least power of two that holds a count: rooms have few sizes, so that few libraries are compiled."""
+    """Least power of two that is not below a count: arrays have few sizes, so that few libraries are compiled."""
     return 1 << (count - 1).bit_length()
 
 

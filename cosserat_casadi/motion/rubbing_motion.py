@@ -1,4 +1,4 @@
-"""A motion with friction of exact contact: equal steps, each divided where something strikes, stops or turns back.
+"""A motion with friction of exact contact: equal steps, divided where a contact strikes, sticks or slips back.
 
 A rod that lies on many sections would change between sticking and slipping without end, one event after the other.
 Steps with friction therefore decide for all sections at once. C code has this law, and cuts a step into stretches, see
@@ -52,7 +52,7 @@ SHORTEST = 2.0**-12
 """Shortest step tried, over the step of the motion; if its equations are not solved, the motion ends."""
 
 LAST = 1.5
-"""Last part of a divided step, over the others, up to which it is not divided once more."""
+"""Largest last part of a divided step, over the other parts, that is not divided once more."""
 
 ROUNDED = 1e-12
 """Share of a step that counts as rounding."""
@@ -62,7 +62,7 @@ UNSETTLED = "At t = {time:.6g} s a step of {size:.3g} s was not solved, {where}:
 
 @dataclass
 class _Told:
-    """A motion as far as it was computed.
+    """A motion in the course of its computation.
 
     Attributes:
         steps: the steps in C.
@@ -114,10 +114,10 @@ class _Told:
         self.carried = CarriedContacts(self.steps.carried(), known, self.stuck)
 
     def recall(self, resume: Resume) -> None:
-        """Take over contacts and memory from where a motion goes on.
+        """Take over contacts and memory from the state from which a motion continues.
 
         Raises:
-            SceneError: they are of another model.
+            SceneError: the contacts and memory belong to another model.
         """
         carried = resume.contacts
         if carried is None or not self._knows(carried) or not self.steps.go_on(carried.memory):
@@ -133,7 +133,7 @@ class _Told:
         self.restart = Restart(self.restart.start, self._phase(self.touches))
 
     def _knows(self, carried: CarriedContacts) -> bool:
-        """Whether carried contacts are of pairs that the model has."""
+        """Whether carried contacts belong to pairs of the model."""
         pairs = range(len(self.steps.facings))
         rows = carried.touches.tolist()
         known = all(isinstance(row, list) and len(row) == KNOWN and row[0] in pairs for row in rows)
@@ -288,8 +288,8 @@ def rubbing_history(
         settings: settings of steps, with their size, s.
         kernels: inverse dynamics and its derivatives.
         after_step: function that is called after every step, with its end time and its size, s.
-        stops: makes the values at whose zeros the motion stops.
-        resume: where a motion goes on; start and touches count for nothing then. None for one that begins.
+        stops: values at whose zeros the motion stops.
+        resume: state from which a motion continues, in place of start and touches; None for a motion that begins.
 
     Raises:
         SceneError: the start contradicts the constraints, or is inside an obstacle.
@@ -315,7 +315,7 @@ def rubbing_history(
 
 
 def _resumed(resume: Resume, size: int) -> ConsistentStart:
-    """The state of a motion with so many unknowns that goes on; the forces of contacts stand behind them."""
+    """State of a continued motion with so many unknowns, to which contact forces are appended."""
     at = Instant(resume.at.time, *(values[:size] for values in (resume.at.x, resume.at.v, resume.at.a)))
     return ConsistentStart(at, 0.0, 0.0, 0.0, 0)
 
@@ -396,7 +396,7 @@ def _integrate(
 def _ends(piece: Piece, start: float, size: float) -> Iterator[tuple[float, float]]:
     """End times and sizes, s, of the steps of a piece from a time on; steps between two kinks are equal.
 
-    They are so to the last bit: the Jacobian of one step serves the next one.
+    They are equal to the last bit, so that the Jacobian of one step serves the next one.
     """
     later = [time for time in (*piece.kinks, piece.end) if time > start]
     for begin, end in pairwise([max(piece.start, start), *later]):

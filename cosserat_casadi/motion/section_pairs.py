@@ -1,27 +1,27 @@
-"""Exact contact in stages of motions, as equations that stay as contacts come and go: pairs of force and gap.
+"""Exact contact in stages of optimal control, by equations that do not change with contacts: pairs of force and gap.
 
-An optimiser goes on from contacts to others, and its equations must not change. So each of a number of sections, and
-each body that may touch, has a force and the gap g over the length, which are the pair of a cable that may go slack,
+An optimiser passes from contacts to others, while its equations must not change. So each of a number of sections, and
+each body that may touch, has a force and a gap g over the length, which obey the law of a cable that may go slack,
 
     Λ + g − √(Λ² + g² + a ε²) = 0,    which is Λ g = a ε²/2 with Λ, g > 0.
 
-Λ = a N is the force N, without unit, times the way a, over the length, by which a unit of it moves its section within
-a stage: it is of the size of gaps, as other unknowns of a stage are. Whatever the stage, N g = ε²/2. The gap is that at
-the end of a stage of one instant, which is Euler's implicit method. A section that approaches stops at the obstacle at
-the end of a stage, and rests once g is zero at two ends: a blow takes the whole speed, the coefficient of restitution
-being none. With another coefficient e the gap is that at
+Λ = a N is the dimensionless force N times the displacement a, over the length, of its section by a unit force within a
+stage, so that it has the size of gaps, like other unknowns of a stage. For any stage, N g = ε²/2. The gap is taken at
+the end of a stage of one instant, which is Euler's implicit method. An approaching section stops at the obstacle at the
+end of a stage, and rests once g is zero at two ends: a blow takes the whole speed, with a coefficient of restitution of
+zero. For another coefficient e the gap is taken at
 
     (x₊ + e x₋)/(1 + e),    x₊ at the end of the stage and x₋ at the beginning of the last one,
 
-which gives the share e of the speed back (L. Paoli, M. Schatzman, *SIAM J. Numer. Anal.* 40 (2002) 702–733). Stages of
-more instants have no such pairs: a force at the first instant throws back a section without restitution.
+which returns the share e of the speed (L. Paoli, M. Schatzman, *SIAM J. Numer. Anal.* 40 (2002) 702–733). Stages of
+several instants have no such pairs: a force at the first instant would throw back a section without restitution.
 
-Coulomb's friction adds no unknown. The point of a section that touches moves by w along the surface within a stage, at
-its velocity at the end, and is held by
+Coulomb friction adds no unknown. The touching point of a section moves by w along the surface within a stage, at its
+velocity at the end, and friction on it is
 
     −μ N w / √(w² + a ε²),
 
-so a section that is held by the share r of μ N creeps by √a ε r/√(1 − r²), over the length, within a stage.
+so a section on which friction is the share r of μ N creeps by √a ε r/√(1 − r²), over the length, within a stage.
 """
 
 from __future__ import annotations
@@ -49,10 +49,10 @@ from cosserat_casadi.model.system import System
 from cosserat_casadi.motion.coincident_ends import watched_ends
 
 SECTIONS = 8
-"""Stretches of a rod, at whose ends are the sections that may touch an obstacle."""
+"""Number of stretches of a rod, at whose ends are the sections that may touch an obstacle."""
 
 STILL = 1e-12
-"""Way within a stage, over the length, that is added to √a ε: without smoothing friction has derivatives too."""
+"""Displacement within a stage, over the length, added to √a ε, so that friction has derivatives without smoothing."""
 
 
 @dataclass(frozen=True)
@@ -62,8 +62,8 @@ class TouchingSections:
     Attributes:
         owner: name of the rod or the body.
         obstacle: the obstacle.
-        places: abscissae X of the sections, base to tip; one number of a body.
-        of_body: whether it is a body.
+        places: abscissae X of the sections, base to tip; a single number for a body.
+        of_body: whether the owner is a body.
     """
 
     owner: str
@@ -76,13 +76,13 @@ class TouchingSections:
 class TouchingPairs:
     """The equations of motion of a model at the end of a stage, with pairs of force and gap.
 
-    Their unknowns x are unknowns of the model and behind these Λ of all pairs; parameters are the model's and behind
-    these the smoothing ε.
+    The unknowns x are the unknowns of the model, followed by Λ of all pairs; the parameters are those of the model,
+    followed by the smoothing ε.
 
     Attributes:
         model: the model, with or without parameters.
-        sections: stretches of a rod, at whose ends are sections that may touch.
-        duration: of the stage, s.
+        sections: number of stretches of a rod, at whose ends are sections that may touch.
+        duration: duration of the stage, s.
     """
 
     model: Model
@@ -96,7 +96,7 @@ class TouchingPairs:
 
     @cached_property
     def touching(self) -> tuple[TouchingSections, ...]:
-        """Sections and bodies that may touch, in the order of the pairs: by their coefficients of restitution."""
+        """Sections and bodies that may touch, in the order of the pairs, sorted by coefficient of restitution."""
         return tuple(sorted(self._all(), key=lambda touching: touching.obstacle.restitution))
 
     def _all(self) -> Iterator[TouchingSections]:
@@ -117,18 +117,18 @@ class TouchingPairs:
 
     @cached_property
     def gaps(self) -> ca.Function:
-        """(x, inputs), with parameters (x, inputs, p), ↦ gaps of all pairs over the lengths; x is the model's."""
+        """(x, inputs), with parameters (x, inputs, p), ↦ gaps of all pairs over the length; x belongs to the model."""
         return self._gaps(self.touching, "gaps")
 
     @cached_property
     def force_units(self) -> FloatArray:
-        """Force of each pair whose Λ is 1, N, shape (count,)."""
+        """Force of each pair at Λ = 1, N, shape (count,)."""
         rows = [self._force_units(touching) for touching in self.touching]
         return np.concatenate([np.zeros(0), *rows])
 
     @cached_property
     def softness(self) -> FloatArray:
-        """Distance that EI/ℓ² moves each section, or body, within a stage, over the length, shape (count,)."""
+        """Displacement a of each section or body by the force EI/ℓ² within a stage, over the length, shape (count,)."""
         discrete = self._nominal.discrete
         units = [
             np.full(len(touching.places), discrete.contact_unit(touching.owner, of_body=touching.of_body))
@@ -138,14 +138,14 @@ class TouchingPairs:
 
     @cached_property
     def inverse_dynamics(self) -> ca.Function:
-        """(x, v, a, inputs, p, rates) ↦ residual of the model's inverse dynamics, the pairs behind its equations."""
+        """(x, v, a, inputs, p, rates) ↦ residual of the model's inverse dynamics, then the equations of the pairs."""
         arguments = self._symbols
         plain = ca.vertcat(self.model.inverse_dynamics(*self._of_model(arguments)), ca.MX(self.count, 1))
         return self._function("inverse_dynamics", arguments, [plain + self._rows(arguments)], ["residual"])
 
     @cached_property
     def dynamics_jacobian(self) -> ca.Function:
-        """Arguments of :attr:`inverse_dynamics` ↦ its derivatives with x, v and a, and the residual."""
+        """Arguments of :attr:`inverse_dynamics` ↦ its derivatives with respect to x, v and a, and the residual."""
         arguments = self._symbols
         *matrices, residual = self.model.dynamics_jacobian(*self._of_model(arguments))
         rows = self._rows(arguments)
@@ -174,17 +174,17 @@ class TouchingPairs:
         return ca.Function(name, arguments, results, self._words, names)
 
     def _of_model(self, arguments: list[Matrix]) -> list[Matrix]:
-        """Arguments of the functions of the model."""
+        """Select the arguments of the functions of the model."""
         *moving, inputs, p, rate, acceleration = arguments
         own = [each[: self.model.size] for each in moving]
         return [*own, inputs, *self._parameters(p), rate, acceleration]
 
     def _parameters(self, p: Matrix) -> list[Matrix]:
-        """The parameters of the model, if it has any."""
+        """List with the parameters of the model; empty if it has none."""
         return [p[:-1]] if self.model.parameters.size else []
 
     def _rows(self, arguments: list[Matrix]) -> Matrix:
-        """Forces in the equations of the model, and the equations of the pairs."""
+        """Contact forces in the equations of the model, followed by the equations of the pairs."""
         x, v, a, inputs, p, rate, _ = arguments
         own = slice(0, self.model.size)
         moved_by = x[self.model.size :]
@@ -221,7 +221,7 @@ class TouchingPairs:
 
     @cached_property
     def _friction(self) -> ca.Function:
-        """(x, inputs, v, rate, forces, ways of creep), with parameters behind inputs, ↦ friction on the unknowns, J."""
+        """(x, inputs, v, rate, forces, creeps) ↦ friction on the unknowns, J; parameters are appended to inputs."""
         written = self._written
         v, rate = ca.MX.sym("v", self.model.size), ca.MX.sym("rate", self.model.inputs.size)
         forces, ways = ca.MX.sym("forces", 1, self.count), ca.MX.sym("ways", 1, self.count)
@@ -241,16 +241,16 @@ class TouchingPairs:
 
     @property
     def _rubbing(self) -> list[tuple[TouchingSections, slice]]:
-        """Sections and bodies that rub where they touch, with the places of their pairs among all."""
+        """Sections and bodies with friction, with the indices of their pairs among all pairs."""
         ends = np.cumsum([len(touching.places) for touching in self.touching]).tolist()
         places = [slice(start, end) for start, end in pairwise([0, *ends])]
         return [each for each in zip(self.touching, places, strict=True) if each[0].obstacle.rubs]
 
     def _drag(self, touching: TouchingSections) -> ca.Function:
-        """(pose, its rate, radius, m, force, N, creep, m/s) ↦ friction, for a unit of each entry of the pose, 12×1.
+        """(pose, its rate, radius, m, force, N, creep, m/s) ↦ generalised friction on the entries of the pose, 12×1.
 
         A pose is the centre of a section, or of a body, and its rotation, column after column, in the axes of the
-        obstacle. The friction is μ N against a sliding that is fast beside the creep, and grows with a slower one.
+        obstacle. Friction is μ N if sliding is fast compared with the creep, and proportional to it if it is slow.
         """
         pose, rate = ca.SX.sym("pose", 12), ca.SX.sym("rate", 12)
         radius, force, creep = ca.SX.sym("radius"), ca.SX.sym("force"), ca.SX.sym("creep")
@@ -283,7 +283,7 @@ class TouchingPairs:
 
     @property
     def _written(self) -> Expressions:
-        """Expressions in unknowns and inputs of the model, and in its parameters if it has any."""
+        """Writer of expressions in unknowns and inputs of the model, and in its parameters if it has any."""
         words = ["x", "inputs", *([PARAMETERS] if self.model.parameters.size else [])]
         return expressions_of(self.model, tuple(words), "")
 
@@ -293,7 +293,7 @@ class TouchingPairs:
         return ca.Function(name, list(written.symbols.values()), [ca.densify(gaps)], list(written.symbols), ["gaps"])
 
     def _gaps_of(self, system: System, touching: TouchingSections) -> Matrix:
-        """Distances of surfaces from an obstacle over the length, k×1."""
+        """Gaps of sections, or of a body, from an obstacle, over the length, k×1."""
         positions = self._positions(system, touching)
         seen = system.seen_from(touching.obstacle.body, positions)
         distances = distance_from(touching.obstacle).map(seen.shape[1])(seen).T
@@ -324,7 +324,7 @@ class TouchingPairs:
         return body
 
     def _length(self, touching: TouchingSections) -> float:
-        """Length that gaps are counted in, m."""
+        """Length by which gaps are divided, m."""
         discrete = self._nominal.discrete
         if touching.of_body:
             return float(discrete.body_frame(touching.owner).length)
@@ -332,12 +332,12 @@ class TouchingPairs:
 
     @cached_property
     def _lengths(self) -> FloatArray:
-        """Length that the gap of each pair is counted in, m, shape (count,)."""
+        """Length by which the gap of each pair is divided, m, shape (count,)."""
         lengths = [np.full(len(touching.places), self._length(touching)) for touching in self.touching]
         return np.concatenate([np.zeros(0), *lengths])
 
     def _force_units(self, touching: TouchingSections) -> FloatArray:
-        """Force that moves each section by the length within a stage, in the direction in which it yields most, N."""
+        """Force, N, that moves each section by one length within a stage, in the direction in which it yields most."""
         nominal = self._nominal
         at = nominal.unloaded(), nominal.pack()
         written = expressions_of(nominal, ("x", "inputs"), "")

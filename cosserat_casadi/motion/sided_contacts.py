@@ -1,9 +1,9 @@
-"""Exact contact beside cables that may go slack and stops of joints: one kind of event at a time, all kinds kept.
+"""Exact contact together with cables that may go slack and stops of joints: one kind of event at a time.
 
-A cable that becomes taut, or a joint that meets its stop, takes its impact as if nothing touched; what touches then
-takes another one, in which taut cables and held joints stay so: obstacles push, and a section jerked off leaves.
-Where both are plastic that is the impact of all at once, as a projection of velocities on a part of a plane follows
-one on the plane. A stop that a blow of an obstacle would make pull is left.
+The impact of a cable that becomes taut, or of a joint that meets its stop, is solved first, as if nothing touched. Then
+the impact of contacts is solved, with taut cables and stopped joints held: obstacles push, and sections that are jerked
+off leave. If both impacts are plastic, this equals one impact of all: to project velocities on a plane, and then on
+part of it, is one projection. A joint leaves a stop that a blow of an obstacle would make pull.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class SidedContacts:
 
     Attributes:
         model: the model, built for a motion.
-        libraries: shared objects that have the functions of the points that touch.
+        libraries: shared objects that contain the functions of the points that touch.
     """
 
     model: Model
@@ -48,15 +48,15 @@ class SidedContacts:
         return OneSided(self.model)
 
     def first_phases(self, x: FloatArray, inputs: FloatArray) -> ContactPhase:
-        """The contacts, and the closed pairs, at a state."""
+        """Determine the contacts and the closed pairs at a state."""
         return self.with_pairs(self.contacts.first_phases(x, inputs), x, inputs)
 
     def with_pairs(self, phases: ContactPhase, x: FloatArray, inputs: FloatArray) -> ContactPhase:
-        """Contacts with the pairs that are closed at a state."""
+        """Add the pairs that are closed at a state to contacts."""
         return replace(phases, closed=self.sided.first_phases(x, inputs))
 
     def arranged(self, plain: MotionEquations, piece: Piece, phases: ContactPhase) -> tuple[MotionEquations, Guards]:
-        """The equations of motion with these contacts and pairs, and the guards of the pairs, then of the contacts."""
+        """Make the equations of motion with these contacts and pairs, and guards of the pairs, then of the contacts."""
         equations, of_pairs = self.sided.arranged(plain, piece, phases.closed)
         equations, of_contacts = self.contacts.arranged(equations, piece, phases)
         if of_pairs is None:
@@ -65,7 +65,7 @@ class SidedContacts:
         return equations, lambda instant: np.concatenate([pairs(instant), of_contacts(instant)])
 
     def settling(self, plain: MotionEquations, piece: Piece, phases: ContactPhase) -> Settling | None:
-        """The correction that closes the gaps of these contacts at the end of a step; None without contacts."""
+        """Return the correction that closes the gaps of these contacts at the end of a step; None without contacts."""
         if not phases.touches:
             return None
         return partial(self.contacts.settled, self.sided.equations(plain, piece, phases.closed), piece, phases)
@@ -79,7 +79,7 @@ class SidedContacts:
         guard: int | None,
         interval: float,
     ) -> Restart[ContactPhase]:
-        """How a motion goes on, or begins; arguments are as of :meth:`ExactContacts.restarted`."""
+        """Restart or start a motion; arguments as for :meth:`ExactContacts.restarted`."""
         size = self.model.size
         before = Instant(at.time, at.x[:size], at.v[:size], at.a[:size])
         count = len(self.sided.pairs)

@@ -1,7 +1,7 @@
-"""Simulate: the motion of a model in time, with steps chosen for a tolerance, or given.
+"""Simulation of a model in time, with steps that are given or chosen for a tolerance.
 
-The error of the steps is not foreseen from one step: the motion is computed twice, once more exactly, and the
-distance of the paths of the tips estimates the error. See docs/theory.md, section 11.
+The error of the steps is not predicted step by step: the motion is computed twice, the second time more exactly, and
+the distance of the paths of the tips estimates the error. See docs/theory.md, section 11.
 """
 
 from __future__ import annotations
@@ -72,91 +72,91 @@ from cosserat_casadi.scene.simulation import Simulation
 LOG = logging.getLogger(__name__)
 
 Tell = Callable[[MotionProgress], None]
-"""A function that is called with the progress after every step."""
+"""A callback that receives the progress after every step."""
 
 TIGHTER = 10.0
-"""Factor between the tolerances of a step of the first two motions that are compared."""
+"""Ratio of the step tolerances of the first two motions that are compared."""
 
 LEAST_TIGHTENING = 3.0
-"""Least factor between the tolerances of a step of further motions."""
+"""Least ratio of the step tolerances of further motions."""
 
 SLOPE = 0.8
-"""Power of a step's tolerance that the error of the paths is taken to go with."""
+"""Power of the step tolerance with which the error of the paths is taken to fall."""
 
 LEAST_SLOPE = 0.3
-"""Least power that the error of the paths is taken to go with, where two motions tell an error.
+"""Least power with which the error of the paths is taken to fall, if two motions tell the error.
 
-It is 0.8 in the mean, but less between some motions: steps of one may happen to suit the motion.
+The power is 0.8 on average, but less between some motions, as the steps of one may suit the motion by chance.
 """
 
 LEAST_SLOPE_AFTER_IMPACTS = 0.08
-"""Least power for motions with impacts: what errs little before one may err much after some more.
+"""Least power for motions with impacts: a small error before an impact may be large after some more.
 
-Until steps tell the waves along a rod, motions may be nearer to each other than to the true one.
+Until steps resolve the waves along a rod, motions may be nearer to each other than to the true one.
 """
 
 LEAST_SLOPE_OF_ALIKE = 0.2
-"""Least power for two motions whose impacts are alike: neither is off by an impact that the other has elsewhere."""
+"""Least power for two motions whose impacts agree one by one."""
 
 SLOPE_OF_THREE_ALIKE = 0.5
-"""Power for three motions whose impacts are alike and whose distances fall as AS_STEPS; else it is LEAST_SLOPE."""
+"""Power for three motions whose impacts agree and whose distances fall as by AS_STEPS; else it is LEAST_SLOPE."""
 
 AS_STEPS = (0.05, 0.2)
-"""Distance over the one of motions TIGHTER times as coarse, between which it falls as errors do; 0.16 by SLOPE."""
+"""Distance over that of motions TIGHTER times as coarse: range in which it falls as errors do; 0.16 by SLOPE."""
 
 LYING = ("lie_down", LAID_DOWN)
-"""Kinds of events by which a rod touches at many sections: when these touch, impacts alone do not tell."""
+"""Kinds of events after which a rod touches at many sections, whose impacts are not comparable one by one."""
 
 FEW_STEPS = 10.0
-"""Number of steps at which a told error counts twice: a few steps may happen to suit the motion."""
+"""Number of steps at which an estimated error counts twice: a few steps may suit the motion by chance."""
 
 ALIKE = 1.25
-"""Steps of a motion over steps of a coarser one, from which on they are shorter by its tolerance, not by its events.
+"""Ratio of the numbers of steps of a motion and a coarser one above which its tolerance, not events, shortens steps.
 
-Steps grow by a bounded factor after each event: over the first few no tolerance differs.
+Steps grow by a bounded factor after each event, so that the first few do not depend on the tolerance.
 """
 
 MOST_ALIKE = 2
-"""Further motions, each TIGHTER times as exact, that are looked at for steps that their tolerance shortens."""
+"""Most further motions, each TIGHTER times as exact, to find one whose steps its tolerance shortens."""
 
 MOST_TIGHTENINGS = 6
-"""Motions, each more exactly computed than the last, before a tolerance is given up."""
+"""Most motions, each more exact than the last, before a tolerance is given up."""
 
 MOST_APART = 3
-"""Halvings of steps in a row that bring motions with impacts no nearer to each other before they are given up."""
+"""Most halvings of steps in a row that bring motions with impacts no nearer to each other."""
 
 FIRST_EQUAL_STEPS = 50
-"""Steps that a motion without a tolerance of a step is first divided into; they are halved until motions agree."""
+"""Number of equal steps of a motion without a step tolerance at first; they are halved until motions agree."""
 
 MOST_HALVINGS = 10
-"""Times that such steps are halved before a tolerance is given up."""
+"""Most halvings of such steps before a tolerance is given up."""
 
 EXACT = 1e-13
-"""Error of Newton's method, over the length, in steps of given size: their energy is to be kept to rounding."""
+"""Error of Newton's method, over the length, in steps of given size, so small that energy is exact to rounding."""
 
 NEWTON = 1e-3
 """Error of Newton's method over the tolerance of a step."""
 
 NEWTON_OF_CLOSED = 1e-4
-"""Error of Newton's method over the tolerance of a step where supports and joints are to stay closed.
+"""Error of Newton's method over the tolerance of a step with supports or joints, which have to stay closed.
 
-Their openings are errors of velocities over a step too. They fall with the tolerance of a step, as its other errors
-do, so that two motions that tell an error tell them too.
+Their openings also cause errors of velocities over a step. These fall with the tolerance of a step like other errors,
+so that two motions that tell an error tell them too.
 """
 
 CLOSED = 1e-10
-"""Error of Newton's method, over the length, where contacts, stops or slack cables change the equations."""
+"""Error of Newton's method, over the length, if contacts, stops or slack cables change the equations."""
 
 FORCE_LEFT = 0.1
-"""Force, in EI/ℓ², that the error of Newton's method may make of a stretch: π² in compression buckle a hinged rod.
+"""Largest force, in EI/ℓ², by the error of Newton's method in stretch; a compression of π² buckles a hinged rod.
 
-A steel wire, ten thousand times as long as it is thick, was buckled by what a thousandth of the tolerance leaves, and
-steps became ever shorter.
+An error of a thousandth of the tolerance buckled a steel wire ten thousand times as long as it is thick, and steps
+became ever shorter.
 """
 
 
 STEPS_ALONE = "Its error is that of the time steps on the modes of the model; of a scene it is that of the modes too."
-"""Sentence of a motion of a model."""
+"""Sentence on the error of a motion of a model."""
 
 
 @dataclass(frozen=True)
@@ -166,8 +166,8 @@ class Companion:
     Attributes:
         history: the motion.
         factor: error of the other motion over the distance of their paths.
-        impacts: energy that its impacts took more than impacts of the other motion before both went on, J.
-        by_modes: whether it tells the error of the modes; else that of the steps.
+        impacts: energy lost in its impacts, less that of the other motion, before both were continued, J.
+        by_modes: whether it tells the error of the modes; else it tells the error of the steps.
     """
 
     history: History
@@ -182,11 +182,11 @@ class TimedHistory:
 
     Attributes:
         history: the motion.
-        error: estimated error of the paths that the steps leave, over the length; nan where none was made.
-        tolerance: of a step, over the length, that the motion was computed with; nan for steps of given size.
-        companion: the motion by which the error was told; None where none was made.
-        distance: distance of the paths from that motion's paths, over the length; nan without one.
-        earlier: motion that was compared with the companion, where impacts with friction ask for a third one.
+        error: estimated error of the paths by the steps, over the length; nan if it was not estimated.
+        tolerance: tolerance of a step of the motion, over the length; nan for steps of given size.
+        companion: the motion by which the error was estimated; None if it was not estimated.
+        distance: distance of the paths from those of the companion, over the length; nan without one.
+        earlier: motion that was compared with the companion, if impacts with friction need a third one.
     """
 
     history: History
@@ -204,17 +204,17 @@ class TimedHistory:
 
 @dataclass(frozen=True)
 class Simulator:
-    """The motion of one model, computed as exactly as asked.
+    """Simulator of the motion of one model, to any exactness.
 
     Attributes:
         model: the model, built for a motion.
         simulation: the settings of the user.
-        start: how the motion begins.
-        stage: what the user is told that is being done.
-        tell: is told of every step.
-        source: chooses the kernels of every motion; None for kernels in CasADi's virtual machine.
-        begun: where the motion goes on from; None for one that begins.
-        events: of the user.
+        start: start of the motion.
+        stage: name of the work under way, for the user.
+        tell: callback after every step.
+        source: selector of the kernels of every motion; None for kernels in CasADi's virtual machine.
+        begun: checkpoint from which the motion continues; None for a motion that begins.
+        events: events of the user.
     """
 
     model: Model
@@ -238,26 +238,26 @@ class Simulator:
 
     @cached_property
     def _flights(self) -> dict[Libraries, FreeFlight]:
-        """Coordinates and momentum of what flies free, by the shared objects that have their functions."""
+        """Coordinates and momentum of free rods, by the shared objects that contain their functions."""
         return {}
 
     @cached_property
     def _begun(self) -> dict[Libraries, Restart[Any]]:
-        """How motions begin, by the same shared objects: what follows contact would be moved by the first motion."""
+        """Restarts at the start of motions, by shared objects; a first motion would move the trackers of contacts."""
         return {}
 
     @cached_property
     def displacements(self) -> FloatArray:
-        """Largest displacement over the length that a unit of each unknown makes, shape (size,)."""
+        """Largest displacement by a unit of each unknown, over the length, shape (size,)."""
         return displacements(self.model, self.library)
 
     @property
     def library(self) -> str | None:
-        """The shared object with the equations of motion; None where they are not in machine code."""
+        """The shared object with the equations of motion; None if they are not in machine code."""
         return None if self.source is None else self.source.library(self.model)
 
     def controlled(self, tolerance: float) -> History:
-        """The motion with steps whose errors stay below a tolerance, over the length, by Radau IIA."""
+        """Compute the motion by Radau IIA with steps whose errors stay below a tolerance, over the length."""
         left = min(NEWTON * tolerance, max(CLOSED, FORCE_LEFT * self._stretch))
         if self.model.scene.touches_exactly or OneSided(self.model).pairs:
             # What Newton's method leaves is what contacts are open by. In flight too: with more of it steps of a thin
@@ -270,17 +270,17 @@ class Simulator:
 
     @property
     def has_equal_steps(self) -> bool:
-        """Whether no tolerance of a step controls the steps: they are halved until motions agree."""
+        """Whether steps are equal and halved until motions agree, because no step tolerance controls them."""
         return self.simulation.integrator == "gauss" or self.rubs
 
     @property
     def rubs(self) -> bool:
-        """Whether friction of exact contact acts, which steps in C have."""
+        """Whether friction of exact contact acts, for which there are steps in C."""
         return self.model.scene.rubs_exactly
 
     @cached_property
     def fall(self) -> FallOfErrors:
-        """How errors of equal steps fall."""
+        """Model of the decrease of errors of equal steps."""
         return RubbingFall(self.model, self.begun) if self.rubs else SmoothFall()
 
     @cached_property
@@ -290,7 +290,7 @@ class Simulator:
 
     @property
     def _stretch(self) -> float:
-        """Least stretch or shear, over the length, that a force of EI/ℓ² makes; infinite where rods admit none."""
+        """Least stretch or shear by a force of EI/ℓ², over the length; infinite if rods admit neither."""
         rods = self.model.discrete.rods.values()
         scales = [
             rod.scales[number] for rod in rods for number, strain in enumerate(rod.admitted) if strain in rod.linear
@@ -298,7 +298,7 @@ class Simulator:
         return min(scales, default=np.inf) ** 2
 
     def stepped(self, size: float) -> History:
-        """The motion with equal steps, s, by the integrator that is asked for."""
+        """Compute the motion with equal steps, s, by the integrator in the settings."""
         method = radau(STAGES)
         if self.simulation.integrator == "gauss":
             method = gauss(STAGES)
@@ -306,22 +306,22 @@ class Simulator:
         return self._integrated(method, StepSettings(tolerance=tolerance, size=size, newton=1.0))
 
     def resumed(self, strand: Strand) -> History:
-        """The motion from where a strand has come to, with its steps."""
+        """Continue the motion of a strand, with its steps."""
         method = gauss(STAGES) if strand.gauss else radau(STAGES)
         return self._integrated(method, strand.settings)
 
     def paths(self, history: History) -> Paths:
-        """Paths of tips and bodies, by which two motions are compared."""
+        """Evaluate the paths of tips and bodies, by which two motions are compared."""
         duration = self.simulation.duration
         states = watched_states(history, duration)
         return history.once("paths", duration, lambda: paths(self.model, states.x, states.inputs, self.library))
 
     def to_tolerance(self, tolerance: float, first: float) -> TimedHistory:
-        """The motion on this model to an error of its steps.
+        """Compute the motion on this model to an error of its steps.
 
         Args:
-            tolerance: of the paths, over the length.
-            first: tolerance of a step to begin with, where steps are controlled.
+            tolerance: tolerance of the paths, over the length.
+            first: first tolerance of a step, if steps are controlled.
         """
         if self.simulation.step is not None:
             history = self.stepped(self.simulation.step)
@@ -337,13 +337,13 @@ class Simulator:
         tolerance_of_paths: Callable[[History], float],
         fine: History | None = None,
     ) -> TimedHistory:
-        """The motion with ever more exact steps, until the paths of two motions agree to a tolerance.
+        """Compute the motion with ever more exact steps, until the paths of two motions agree to a tolerance.
 
         Args:
             coarse: the motion to begin with.
-            first: tolerance of a step, over the length, that it was computed with.
-            tolerance_of_paths: what its steps may make of the paths of a motion, over the length.
-            fine: the motion with steps TIGHTER times as exact, where it is known.
+            first: tolerance of a step of that motion, over the length.
+            tolerance_of_paths: function of a motion ↦ allowed error of its paths by the steps, over the length.
+            fine: the motion with steps TIGHTER times as exact; None if it is not known.
         """
         timed = TimedHistory(coarse, float("nan"), first)
         factor = TIGHTER
@@ -369,12 +369,12 @@ class Simulator:
         return timed
 
     def finer(self, timed: TimedHistory, factor: float, fine: History | None = None) -> TimedHistory:
-        """The motion with a tolerance of a step that is smaller by a factor, or more, and its error by the distance.
+        """Compute the motion with a step tolerance smaller by a factor, or more, and its error by the distance.
 
         Args:
-            timed: the motion that is compared with it.
-            factor: between the tolerances.
-            fine: the motion with the smaller tolerance, where it is known.
+            timed: the motion with the larger tolerance.
+            factor: ratio of the tolerances.
+            fine: the motion with the smaller tolerance; None if it is not known.
         """
         tolerance = timed.tolerance / factor
         fine = fine or self.controlled(tolerance)
@@ -406,11 +406,11 @@ class Simulator:
         return TimedHistory(fine, error, tolerance, Companion(timed.history, left), distance)
 
     def told_by_half(self, history: History, step_tolerance: float = float("nan")) -> TimedHistory:
-        """A motion with the error of its steps by one whose steps are half of its longest.
+        """Estimate the error of the steps of a motion by another one with half of its longest step.
 
         Args:
             history: the motion.
-            step_tolerance: tolerance of a step, over the length, that it was computed with; nan where steps were given.
+            step_tolerance: tolerance of a step of the motion, over the length; nan for given steps.
         """
         shorter = self.stepped(history.statistics.largest_step / 2.0)
         history_paths = self.paths(history)
@@ -420,12 +420,12 @@ class Simulator:
         return TimedHistory(history, error, step_tolerance, Companion(shorter, left), distance)
 
     def halved(self, tolerance: float, begun: History | None = None) -> TimedHistory:
-        """The motion with equal steps that are halved until the paths of two motions agree to a tolerance.
+        """Compute the motion with equal steps that are halved until the paths of two motions agree to a tolerance.
 
         Args:
-            tolerance: of the paths, over the length.
-            begun: a motion with equal steps to begin with, which are short enough on other modes; by default a motion
-                with a few steps.
+            tolerance: tolerance of the paths, over the length.
+            begun: first motion, with equal steps that were short enough on other modes; by default a motion with a few
+                steps.
         """
         history = begun or self.stepped(self.simulation.duration / FIRST_EQUAL_STEPS)
         assert history.settings.size is not None, "its steps are equal"
@@ -505,7 +505,7 @@ class Simulator:
 
 
 def has_shorter_steps_at_events(history: History) -> bool:
-    """Whether a motion has so many steps next to its events that equal ones of half its longest would be fewer."""
+    """Whether a motion has so many steps next to events that equal steps of half its longest one would be fewer."""
     statistics = history.statistics
     if not history.events or not statistics.steps:
         return False
@@ -513,9 +513,9 @@ def has_shorter_steps_at_events(history: History) -> bool:
 
 
 def are_struck_alike(first: History, second: History) -> bool:
-    """Whether two motions have the same impacts, one by one: of the same owners, on the same obstacles and sections.
+    """Whether two motions have equal impacts, one by one: of equal owners, on equal obstacles and sections.
 
-    The impacts of a rod that lies down are like no others.
+    Motions in which a rod lies down never count as equal.
     """
     if any(event.kind in LYING for event in (*first.events, *second.events)):
         return False
@@ -527,14 +527,14 @@ def are_struck_alike(first: History, second: History) -> bool:
 
 
 def left_by(factor: float, finer: History, coarser: History | None = None, fallen: float = float("nan")) -> float:
-    """Error of the finer of two motions over their distance, from above, by the factor of their steps' tolerances.
+    """Upper bound of the error of the finer of two motions over their distance, by the ratio of their step tolerances.
 
     Args:
-        factor: the larger tolerance of a step over the smaller one.
-        finer: the motion with the smaller one.
-        coarser: the other motion; None where its impacts count as unlike.
-        fallen: their distance over that of the coarser one from a third, TIGHTER times as coarse, where the impacts of
-            all three are alike; else nan.
+        factor: the larger step tolerance over the smaller one.
+        finer: the motion with the smaller step tolerance.
+        coarser: the other motion; None if its impacts count as different.
+        fallen: distance of the two over the distance of the coarser one from a third, TIGHTER times as coarse, if the
+            impacts of all three agree; else nan.
     """
     slope = LEAST_SLOPE
     if is_struck(finer) or (coarser is not None and is_struck(coarser)):
@@ -546,7 +546,7 @@ def left_by(factor: float, finer: History, coarser: History | None = None, falle
 
 
 def factor_for(error: float, tolerance: float) -> float:
-    """Factor by which a smaller tolerance of a step has the error meet a tolerance."""
+    """Factor by which the step tolerance must be reduced for the error to meet a tolerance."""
     if not np.isfinite(error):
         return LEAST_TIGHTENING
     return float(np.clip((error / tolerance) ** (1.0 / SLOPE), LEAST_TIGHTENING, TIGHTER))
@@ -561,18 +561,18 @@ def simulate(
     source: MotionCompiler | None = None,
     events: Sequence[MotionEvent] = (),
 ) -> Motion:
-    """Motion of a model on its own modes and nodes: only the error of the time steps is controlled, and told.
+    """Simulate a model on its own modes and nodes; only the error of the time steps is controlled and reported.
 
     Args:
-        model: of a scene with motions, built with ``build(scene.with_motion_inputs(), …, moving=True)``.
-        start: an equilibrium of the scene to start from at rest; by default what the simulation says.
-        simulation: duration, frames, tolerance; by default the scene's.
-        progress: told of every step.
-        source: as in :class:`Simulator`.
+        model: model of a scene with motions, built with ``build(scene.with_motion_inputs(), …, moving=True)``.
+        start: an equilibrium of the scene to start from at rest; by default the start in the simulation.
+        simulation: duration, frames, tolerance; by default those of the scene.
+        progress: callback after every step.
+        source: selector of kernels, as in :class:`Simulator`.
         events: events of the user, as in :class:`Simulator`.
 
     Raises:
-        SceneError: the scene says nothing of a simulation, or cannot be simulated so.
+        SceneError: the scene has no simulation, or cannot be simulated with these settings.
     """
     model = model.at().in_motion
     asked = simulation or model.scene.simulation
@@ -593,12 +593,12 @@ def simulate(
 
 
 def bound_of(scene: Scene, simulation: Simulation, tolerance: float) -> float:
-    """Error up to which a motion of a scene is the one that was asked for: what the user fixed need but resolve it."""
+    """Largest error at which a motion counts as resolved; modes or steps that the user fixed need only resolve it."""
     return LARGEST_SHAPE_ERROR if scene.accuracy.fixed or simulation.step is not None else tolerance
 
 
 def asked_of(scene: Scene, simulation: Simulation) -> float | None:
-    """Error of the paths that somebody asks for; None where a scene fixes modes and no tolerance is written."""
+    """Requested error of the paths, over the length; None if a scene fixes modes and has no tolerance."""
     is_written = simulation.tolerance is not None or scene.accuracy.binds
     return tolerance_of(scene, simulation) if is_written else None
 
@@ -622,14 +622,14 @@ def started(
     near: Solution | None = None,
     source: MotionCompiler | None = None,
 ) -> Start:
-    """How the motion of a model begins.
+    """Make the start of the motion of a model.
 
     Args:
         model: the model.
-        simulation: its settings.
-        solution: an equilibrium to start from; None for what the simulation says.
-        near: the equilibrium of the start on other modes; None where it is not known.
-        source: as in :class:`Simulator`.
+        simulation: settings of the motion.
+        solution: an equilibrium to start from; None for the start in the settings.
+        near: the equilibrium of the start on other modes; None if it is not known.
+        source: selector of kernels, as in :class:`Simulator`.
     """
     moving = moving_inputs(model)
     inputs = moving.at_start
@@ -644,7 +644,7 @@ def started(
 
 
 def _along(model: Model, start: Start, rates: FloatArray) -> Start:
-    """A start that tells whether rods move along with their bases and lengths, by rates of the inputs."""
+    """Add a sentence to a start that says whether rods move along with their bases and lengths, by input rates."""
     of_rods = ("length", "base.position", "base.quaternion")
     moved = [span for entry, span in model.inputs if entry.of_rod and entry.field in of_rods and np.any(rates[span])]
     return replace(start, sentence=start.sentence + ALONG) if moved and start.found else start
@@ -655,8 +655,8 @@ def unresolved(history: History, duration: float, library: str | None = None) ->
 
     Args:
         history: the motion.
-        duration: its end, s.
-        library: shared object that has :func:`functions_of_limits`; None without one.
+        duration: end of the motion, s.
+        library: shared object that contains :func:`functions_of_limits`; None without one.
     """
     model = history.model
     _, x, inputs = watched_states(history, duration)
@@ -666,12 +666,12 @@ def unresolved(history: History, duration: float, library: str | None = None) ->
 
 
 def told_beyond(history: History, duration: float, library: str | None = None) -> tuple[MotionOutcome, str] | None:
-    """When strains are first beyond their limits, as outcome and sentence; None where they never are.
+    """Outcome and sentence on the first time at which strains exceed their limits; None if they never do.
 
     Args:
         history: the motion.
-        duration: its end, s.
-        library: shared object that has the margins of strains; None without one.
+        duration: end of the motion, s.
+        library: shared object that contains the margins of strains; None without one.
     """
     times, x, inputs = watched_states(history, duration)
     limited = history.model.strain_margins is not None and library is not None
@@ -689,14 +689,14 @@ def judged(
     bound: float,
     companions: Sequence[Companion | None] = (),
 ) -> Motion:
-    """The motion that was computed to its end; not resolved where its error is beyond a bound, or is not known.
+    """Make the result of a motion computed to its end; it is not resolved if its error exceeds a bound or is unknown.
 
     Args:
         simulator: the simulator that computed it.
         history: the motion.
-        error: estimated error of the paths over the length; no finite number where none could be made.
-        bound: error up to which it is the motion that was asked for.
-        companions: motions that told the error.
+        error: estimated error of the paths over the length; not finite if it could not be estimated.
+        bound: largest error at which the motion counts as resolved.
+        companions: motions by which the error was estimated.
     """
     outcome = MotionOutcome.COMPLETED
     message = message_of(history, outcome)
@@ -728,7 +728,7 @@ def judged(
 
 
 def ended_early(simulator: Simulator, history: History) -> Motion:
-    """The motion as far as it was computed; of a part no error is estimated."""
+    """Make the result of a motion that ended early; its error is not estimated."""
     outcome = outcome_of(history)
     message = message_of(history, outcome)
     if outcome is not MotionOutcome.INTERRUPTED:
@@ -748,7 +748,7 @@ def motion_of(
     message: str,
     companions: Sequence[Companion | None] = (),
 ) -> Motion:
-    """The record of a motion: its rows at the times asked for, as far as it reached them."""
+    """Make the record of a motion, with rows at the requested times that it reached."""
     model = simulator.model
     wanted = simulator.simulation.frame_times
     for event in history.events:
@@ -787,12 +787,12 @@ def motion_of(
 def _account(
     history: History, times: FloatArray, begun: Checkpoint | None, strands: tuple[Strand, ...], error: float
 ) -> Account:
-    """Energies of a motion at its times, and its end.
+    """Evaluate the energies of a motion at its times, and its end.
 
     Args:
         history: the motion.
         times: shape (T,), s.
-        begun: where it goes on from; None for one that begins.
+        begun: checkpoint from which the motion continues; None for a motion that begins.
         strands: the motion, then the motions that tell its error.
         error: estimated error of its paths, over the length.
     """
@@ -808,7 +808,7 @@ def _nothing() -> Account:
 
 
 def _strand(one: Companion) -> Strand:
-    """A motion as far as it has come; its impacts are counted up to there."""
+    """Make the strand of a motion at its present end, with its impacts up to there."""
     history = one.history
     by_gauss = not history.method.stiffly_accurate
     return Strand(
@@ -824,7 +824,7 @@ def _tips(history: History, time: float) -> dict[str, list[float]]:
 
 
 def not_started(model: Model, start: Start, tolerance: float | None = None) -> Motion:
-    """The record of a motion that has no state to begin with, with the tolerance that was asked for."""
+    """Make the record of a motion without a state to start from, with the requested tolerance."""
     none = np.zeros(0)
     no_state = np.zeros((0, model.size))
 

@@ -1,11 +1,11 @@
 """Small motions about an equilibrium, M δẍ + C δẋ + K δx = 0, on the coordinates that constraints leave free.
 
-Multipliers and tensions have no inertia. A cable that yields, since it is slack or nearly so, is eliminated with its
-tension. All other constraints are kept by what varies in the null space of their gradients G: with the columns of Z an
-orthonormal basis of it, δx = Z z and Zᵀ (M Z z̈ + C Z ż + K Z z) = 0, as their wrenches do no work on Z.
+Multipliers and tensions have no inertia. A cable that yields, because it is slack or nearly so, is eliminated with its
+tension. All other constraints are satisfied by variations in the null space of their gradients G: if the columns of Z
+are an orthonormal basis of it, δx = Z z and Zᵀ (M Z z̈ + C Z ż + K Z z) = 0, as their wrenches do no work on Z.
 
-Each row counts in its own unit of energy and each coordinate in the root of it, so that K and M are symmetric where
-the loads have a potential, whatever the rods are made of.
+Each row is scaled by its unit of energy, and each coordinate by the square root of it, so that K and M are symmetric if
+the loads have a potential, for rods of any materials.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.relaxing_rows import BranchRows
 
 DEPENDENT = 1e-9
-"""Share of the largest singular value of G below which a constraint asks nothing, or repeats others.
+"""Singular value of G, over the largest one, below which a constraint is void or redundant.
 
-A straight rod that cannot stretch is not held along its axis to first order: that row holds rounding errors alone.
+A straight inextensible rod is not held along its axis to first order: that row consists of rounding errors.
 """
 
 TAUT = 1e9
@@ -39,8 +39,8 @@ class SmallMotions:
         mass: M = ∂ residual/∂a, shape (size, size), s².
         units: energy that each row is divided by, shape (size,), J.
         differential: whether an unknown is a coordinate that moves, shape (size,).
-        held: gradients of what else stays as it is: norms of quaternions, which move nothing, then gaps of contacts
-            that press, shape (j, size).
+        held: gradients of further fixed quantities: norms of quaternions, which move nothing, then gaps of pressing
+            contacts, shape (j, size).
         branches: rows that are integrated once in time (motion/relaxing_rows.py).
     """
 
@@ -64,14 +64,14 @@ class SmallMotions:
 
     @cached_property
     def roots(self) -> FloatArray:
-        """Root of the energy of each moving coordinate, relative to the largest, shape (n,)."""
+        """Square root of the energy unit of each moving coordinate, over the largest one, shape (n,)."""
         units = self.units[self.moving]
         largest = units.max(initial=0.0)
         return np.asarray(np.sqrt(units / largest))
 
     @cached_property
     def yielding(self) -> npt.NDArray[np.int64]:
-        """Indices of the tensions of cables that yield, so that their length follows from the tension."""
+        """Indices of the tensions of yielding cables, whose length follows from the tension."""
         chosen = []
         for index in self.algebraic:
             own = abs(self.stiffness[index, index])
@@ -94,7 +94,7 @@ class SmallMotions:
             columns: derivatives of all rows of the residual with k arguments, shape (size, k).
 
         Returns:
-            the rows, shape (n, k), no unit but for the unit of the columns.
+            the rows, shape (n, k), dimensionless except for the unit of the columns.
         """
         rows = columns[self.moving]
         if not self.yielding.size:
@@ -106,9 +106,9 @@ class SmallMotions:
 
     @cached_property
     def constraints(self) -> FloatArray:
-        """Gradients G of the constraints with the scaled coordinates, one a row, shape (m, n).
+        """Gradients G of the constraints with respect to the scaled coordinates, as rows, shape (m, n).
 
-        Coordinates that move nothing are held too, by equations that are not mechanical ones.
+        Coordinates that move nothing are held too, by equations that are not mechanical.
         """
         by_multipliers = self.stiffness[np.ix_(self.holding, self.moving)]
         gradients = np.vstack([by_multipliers, self.held[:, self.moving]])
@@ -116,7 +116,7 @@ class SmallMotions:
 
     @cached_property
     def basis(self) -> FloatArray:
-        """Z: orthonormal basis of the motions that the constraints admit, scaled coordinates, shape (n, k)."""
+        """Orthonormal basis Z of the motions that the constraints admit, in scaled coordinates, shape (n, k)."""
         if not len(self.constraints):
             return np.eye(self.moving.size)
         _, singular, rows = np.linalg.svd(self.constraints)
@@ -125,21 +125,21 @@ class SmallMotions:
         return np.asarray(rows[rank:].T)
 
     def projected(self, rows: FloatArray) -> FloatArray:
-        """Rows of the moving coordinates, shape (n, j), projected on the free coordinates z, shape (k, j)."""
+        """Project rows of the moving coordinates, shape (n, j), on the free coordinates z, shape (k, j)."""
         return np.asarray(self.basis.T @ (self.roots[:, None] * rows))
 
     def displacement(self, free: npt.NDArray[np.inexact]) -> npt.NDArray[np.inexact]:
-        """δx of all unknowns from the free coordinates z, shapes (size, j) and (k, j); zero for the algebraic ones."""
+        """Return δx of all unknowns, (size, j), from free coordinates z, (k, j); zero for the algebraic unknowns."""
         unknowns = np.zeros((self.units.size, free.shape[1]), dtype=free.dtype)
         unknowns[self.moving] = self.basis @ free / self.roots[:, None]
         return unknowns
 
     def creeps(self, values: npt.NDArray[np.complex128], free: npt.NDArray[np.inexact]) -> npt.NDArray[np.bool_]:
-        """Whether each motion is a decay that dashpots of branches brake more than all other damping, shape (p,).
+        """Whether each motion is a decay that is damped more by dashpots of branches than by all else, shape (p,).
 
         Args:
             values: eigenvalues λ, shape (p,).
-            free: their vectors on the free coordinates, shape (k, p).
+            free: eigenvectors on the free coordinates, shape (k, p).
         """
         moved = self.displacement(free)
         weighted = self.units[:, None] * moved.conj()

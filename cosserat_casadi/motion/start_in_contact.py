@@ -1,11 +1,11 @@
-"""A start at rest in contact: the equilibrium on the modes of a motion, on its own sections, and what presses there.
+"""A start at rest in contact: the equilibrium on the modes and sections of a motion, with its pressing contacts.
 
-Each turn linearises balance and gaps at once. Forces that only push and gaps that are not negative are then a linear
-complementarity problem: Newton's method, of which the last turns are quadratic (S.-P. Han, *Superlinearly convergent
+Each iteration linearises balance and gaps at once. Forces that only push, and gaps that are not negative, then make up
+a linear complementarity problem: Newton's method, which converges quadratically (S.-P. Han, *Superlinearly convergent
 variable metric algorithms for general nonlinear programming problems*, Math. Programming 11, 1976). A heavy rod that
-nothing supports yet may be as unstable as an upright column that buckles, and its problem has then no solution or the
-wrong one: such a turn stiffens all variations alike until none releases energy (J. Nocedal, S. J. Wright, *Numerical
-Optimization*, 2nd ed., Springer 2006, sections 3.4 and 18.3). The equilibrium does not change by that.
+is not yet supported may be as unstable as a buckling column, and its problem then has no solution or a wrong one: such
+an iteration stiffens all variations alike until none releases energy (J. Nocedal, S. J. Wright, *Numerical
+Optimization*, 2nd ed., Springer 2006, sections 3.4 and 18.3). This does not change the equilibrium.
 """
 
 from __future__ import annotations
@@ -26,40 +26,40 @@ from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.numerics.broyden import solved
 
 MOST_TURNS = 50
-"""Turns before no equilibrium is found."""
+"""Most iterations."""
 
 NEARBY = 0.05
-"""Gap over the length up to which a section may come to press in a turn."""
+"""Largest gap, over the length, of a section that may press in an iteration."""
 
 LONGEST = 0.3
-"""Largest change of an unknown in a turn."""
+"""Largest change of an unknown in an iteration."""
 
 SETTLED = 1e-11
-"""Change of the unknowns that counts as none."""
+"""Change of the unknowns that counts as zero."""
 
 ROUNDED = 1e-8
-"""Change of the unknowns that counts as none where the turn before did not change them more: it is rounding.
+"""Change of the unknowns that counts as rounding if the iteration before did not change them more.
 
-Sections close beside each other, as at the tip of a rod on many modes, make as much of the rounding of their gaps.
+Sections close to each other, as at the tip of a rod on many modes, amplify the rounding of their gaps so much.
 """
 
 LEAST_STIFFNESS = 1e-3
-"""Least eigenvalue, in EI/ℓ, of the energy of a turn: less is raised to it."""
+"""Least eigenvalue, in EI/ℓ, of the energy in an iteration; smaller ones are raised to it."""
 
 NO_GAP = 1e-13
-"""Gap below zero, over the length, that counts as none."""
+"""Penetration, over the length, that counts as zero."""
 
 
 def resting(
     contacts: ExactContacts, x: FloatArray, inputs: FloatArray, guess: Sequence[Contact]
 ) -> tuple[FloatArray, ContactPhase] | None:
-    """Unknowns of an equilibrium in contact, and what touches there; None where none is found.
+    """Find the unknowns of an equilibrium in contact, and its contacts; None if no equilibrium is found.
 
     Args:
-        contacts: of the model.
+        contacts: exact contacts of the model.
         x: unknowns to start from, shape (n,).
         inputs: stacked inputs, shape (m,).
-        guess: contacts of the same scene at rest, which tell what lies.
+        guess: contacts of the scene at rest, which tell which rods lie.
     """
     facings = contacts.facings
     allowed = variations(contacts.model)
@@ -102,7 +102,7 @@ def resting(
 
 
 def _stiffened(stiffness: FloatArray, allowed: ConstrainedVariations) -> FloatArray:
-    """The stiffness with as much added to all that varies as keeps every admissible variation from releasing energy."""
+    """Shift the stiffness by the least amount with which no admissible variation releases energy."""
     lowest = float(admissible_eigenvalues(stiffness, allowed).min(initial=np.inf))
     stiffened = stiffness.copy()
     stiffened[allowed.free, allowed.free] += max(0.0, LEAST_STIFFNESS - lowest)
@@ -112,7 +112,7 @@ def _stiffened(stiffness: FloatArray, allowed: ConstrainedVariations) -> FloatAr
 def _pushes(
     stiffness: FloatArray, residual: FloatArray, gradients: FloatArray, pushed: FloatArray, gaps: FloatArray
 ) -> FloatArray | None:
-    """Forces of a turn, none of which pulls, and at which no gap closes, shape (m,); None where none are found."""
+    """Forces of an iteration, which do not pull and keep gaps from closing, shape (m,); None if there are none."""
     answers = solved(stiffness, np.column_stack([-residual, pushed.T]))
     if answers is None:
         return None
@@ -124,12 +124,12 @@ def _pushes(
 def _balanced(
     stiffness: FloatArray, residual: FloatArray, gradients: FloatArray, pushed: FloatArray, gaps: FloatArray
 ) -> tuple[FloatArray, FloatArray] | None:
-    """Change of the unknowns that closes gaps, shape (n,), and the forces that balance it, shape (m,).
+    """Solve for the change of the unknowns that closes gaps, shape (n,), and the forces in balance, shape (m,).
 
-    The forces are known already where the gaps press: solved for with the unknowns they have less rounding.
+    The forces of pressing gaps are known already, but have less rounding if they are solved with the unknowns.
 
     Returns:
-        None where rounding makes the gaps depend on each other.
+        both; or None if rounding makes the gaps depend on each other.
     """
     size, count = len(stiffness), len(gaps)
     bordered = np.zeros((size + count, size + count))
@@ -141,7 +141,7 @@ def _balanced(
 
 
 def _candidates(contacts: ExactContacts, x: FloatArray, inputs: FloatArray, laid: frozenset[int]) -> Touches:
-    """Sections that may press: near sections of rods that lie; elsewhere the sections where gaps are least."""
+    """Contacts that may press: nearby holding sections of rods that lie, and for other rods the least gaps."""
     lying: list[MovingContact] = []
     nearest: list[MovingContact] = []
     for number, facing in enumerate(contacts.facings):
@@ -157,7 +157,7 @@ def _candidates(contacts: ExactContacts, x: FloatArray, inputs: FloatArray, laid
 def _turning(
     facings: Sequence[Facing], pressing: Touches, forces: FloatArray, x: FloatArray, inputs: FloatArray
 ) -> FloatArray:
-    """Change of the forces on the unknowns as normals turn and places slide, shape (n, n)."""
+    """Derivative of the generalised contact forces by the unknowns, as normals turn and places slide, (n, n)."""
     follower = Follower(facings, pressing)
     _, gaps = follower.gaps(x, inputs)
     total, _ = follower.curvature(x, inputs, gaps, forces)
@@ -165,7 +165,7 @@ def _turning(
 
 
 def _flat(facings: Sequence[Facing], pressing: Touches, x: FloatArray, inputs: FloatArray) -> frozenset[int]:
-    """Rods and obstacles that touch at a place that slides, where the gap has no bend."""
+    """Pairs of rods and obstacles with a sliding contact at which the gap is flat along the rod."""
     _, gaps = Follower(facings, pressing).gaps(x, inputs)
     pairs = zip(pressing, gaps, strict=True)
     return frozenset(touch.facing for touch, gap in pairs if touch.slides and gap.bend <= FLATTEST)

@@ -1,6 +1,6 @@
-"""Inverse dynamics and its derivatives as the steps of a motion call them, over and over.
+"""Inverse dynamics and its derivatives, as called repeatedly by the steps of a motion.
 
-CasADi's virtual machine runs them, or machine code that motion_compiler.py has compiled.
+They run in CasADi's virtual machine, or as machine code that motion_compiler.py has compiled.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from cosserat_casadi.motion.repeated_call import Libraries, RepeatedCall
 from cosserat_casadi.numerics.time_steps import Stepper, StepperAfter
 
 MATRICES = 3
-"""Derivatives of inverse dynamics: stiffness, damping, mass."""
+"""Number of derivatives of inverse dynamics: stiffness, damping, mass."""
 
 JACOBIANS = "motion_jacobians"
 """Name of these derivatives in C, and of their files in the cache."""
@@ -25,14 +25,14 @@ JACOBIANS = "motion_jacobians"
 
 @dataclass(frozen=True)
 class StepKernels:
-    """Functions of (x, v, a, inputs, inputs_rate, inputs_acceleration), with parameters behind the inputs.
+    """Functions of (x, v, a, inputs, inputs_rate, inputs_acceleration), with parameters appended to the inputs.
 
     Attributes:
         residual: ↦ residual of the equations of motion, shape (size,).
-        jacobians: ↦ its derivatives with x, v and a, each of shape (size, size).
-        stepper: takes the steps in machine code; None where Python takes them.
-        derivatives: the call behind the derivatives in machine code; None where CasADi's virtual machine runs them.
-        stepper_after: asked in steps of Python for a stepper that takes the rest; None where none is to come.
+        jacobians: ↦ its derivatives with respect to x, v and a, each of shape (size, size).
+        stepper: taker of the steps in machine code; None if Python takes them.
+        derivatives: compiled call of the derivatives; None if CasADi's virtual machine runs them.
+        stepper_after: function that steps in Python ask for a stepper that takes the rest; None without one.
     """
 
     residual: Callable[..., FloatArray]
@@ -43,17 +43,17 @@ class StepKernels:
 
     @property
     def library(self) -> str | None:
-        """The shared object that has the residual; None where CasADi's virtual machine runs it."""
+        """The shared object that contains the residual; None if CasADi's virtual machine runs it."""
         return self.residual.library if isinstance(self.residual, RepeatedCall) else None
 
     @property
     def libraries(self) -> Libraries:
-        """The shared objects that have the residual, the derivatives, and all that is written beside them."""
+        """The shared objects that contain the residual and the derivatives, with their companions."""
         return Libraries(self.library, None if self.derivatives is None else self.derivatives.library)
 
 
 def interpreted_residual(model: Model) -> RepeatedCall:
-    """Inverse dynamics by CasADi's virtual machine."""
+    """Make inverse dynamics in CasADi's virtual machine."""
     return RepeatedCall(model.inverse_dynamics_in_scalars)
 
 
@@ -72,9 +72,9 @@ def interpreted_derivatives(model: Model) -> ca.Function:
 
 
 def interpreted_jacobians(model: Model) -> Callable[..., list[FloatArray]]:
-    """The derivatives of inverse dynamics by CasADi's virtual machine; they are written where they are first asked for.
+    """Make the derivatives of inverse dynamics in CasADi's virtual machine; they are written at their first call.
 
-    Sparse matrices of CasADi become arrays by way of lists, which takes a fifth of the time of the derivatives.
+    CasADi converts sparse matrices to arrays through lists, which takes a fifth of the time of the derivatives.
     """
     calls: list[RepeatedCall] = []
 

@@ -1,4 +1,4 @@
-"""Words for the templates of steps in C, exported or of motions with friction: limits, and numbers of the method."""
+"""Words in the templates of steps in C, exported or with friction: limits, and coefficients of the method."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from cosserat_casadi.numerics.collocation import radau
 from cosserat_casadi.numerics.step_run import FEW_ITERATIONS
 
 STEP_TOLERANCE = 1e-11
-"""Displacement over the length that Newton's method may leave in a step; joints open by no more."""
+"""Largest displacement error of Newton's method in a step, over the length; joints open by no more."""
 
 STEP_ITERATIONS, MOST_STEP_ITERATIONS = 12, 20
-"""Newton corrections of one attempt at a step: by default, and at most."""
+"""Newton iterations of one attempt at a step: by default, and at most."""
 
 STEP_PARTS, MOST_STEP_PARTS = 8, 32
 """Parts that a step may be cut into: by default, and at most."""

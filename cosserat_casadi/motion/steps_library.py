@@ -90,7 +90,7 @@ def steps_library() -> ctypes.CDLL:
 
 
 def steps_are_at_hand() -> bool:
-    """Whether the loop was compiled before: in this process, or in the cache.
+    """Whether the compiled loop is available, in this process or in the cache.
 
     Raises:
         ExportError: there is no compiler.
@@ -101,24 +101,24 @@ def steps_are_at_hand() -> bool:
 
 
 def steps_are_loaded() -> bool:
-    """Whether this process has the loop."""
+    """Whether this process has loaded the loop."""
     return bool(steps_library.cache_info().currsize)
 
 
 @cache
 def _origin() -> str:
-    """Key of the sources."""
+    """Key of the C sources in the cache."""
     return hashlib.sha256("\0".join(_texts().values()).encode()).hexdigest()
 
 
 def stem_of_steps() -> str:
-    """Name of the tally of the time that went without the loop."""
+    """Name of the record of time spent without the compiled loop."""
     return f"{NAME}-{_origin()[:20]}"
 
 
 @cache
 def _texts() -> dict[str, str]:
-    """The sources by file name."""
+    """The C sources by file name."""
     return {
         f"{NAME}.c": resource("c", f"{NAME}.c"),
         "stage_newton.c": resource("c", "stage_newton.c"),
@@ -128,7 +128,7 @@ def _texts() -> dict[str, str]:
 
 
 def _words() -> dict[str, Any]:
-    """Constants of the C, from the modules that it follows."""
+    """Constants in the C, with the values of the Python modules that it implements."""
     method = radau(STAGES)
     whole, pair = complex(method.eigenvalues[0]), complex(method.eigenvalues[1])
     arrays = {

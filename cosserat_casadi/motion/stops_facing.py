@@ -1,8 +1,8 @@
-"""Rigid stops of joints, and rigid cables that may go slack, among what touches exactly in steps in C.
+"""Rigid stops of joints, and rigid cables that may go slack, as exact contacts of steps in C.
 
-The way of a joint to its stop, or the sag of a cable, is the distance of a point on a line from a plane across it; the
-push of the stop, or the tension, is the force along the normal. Steps in C know points, surfaces and the law between
-gaps and forces, so that these pairs need no other law.
+The distance of a joint from its stop, or the sag of a cable, is treated as the distance of a point on a line from a
+plane across it; the push of the stop, or the tension, is the force along the normal. Steps in C have points, surfaces
+and the law between gaps and forces, so that these pairs need no other law.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ from cosserat_casadi.motion.one_sided import OneSided
 
 @dataclass(frozen=True)
 class PairFacing(BodyFacing):
-    """A joint and a rigid stop of it, or a rigid cable that may go slack.
+    """A joint with a rigid stop, or a rigid cable that may go slack.
 
     Attributes:
-        number: of the pair among those of :class:`~cosserat_casadi.motion.one_sided.OneSided`.
-        push_entry: entry of the push or the tension in the unknowns, whose row is the pair.
-        scale: unit of the coordinate of the joint, rad or m; of a cable the length of its rod, m.
-        energy: unit of the work of the push, J.
+        number: index of the pair among those of :class:`~cosserat_casadi.motion.one_sided.OneSided`.
+        push_entry: entry of the push or the tension in the unknowns, whose row is the equation of the pair.
+        scale: unit of the coordinate of the joint, rad or m; for a cable the length of its rod, m.
+        energy: energy unit of the work of the push, J.
     """
 
     number: int
@@ -44,7 +44,7 @@ class PairFacing(BodyFacing):
 
     @cached_property
     def length(self) -> float:
-        """Unit of the way, rad or m: gaps are ways over it."""
+        """Unit of the distance, rad or m, by which gaps are divided."""
         return self.scale
 
     @cached_property
@@ -55,7 +55,7 @@ class PairFacing(BodyFacing):
 
 @dataclass(frozen=True)
 class StopFacing(PairFacing):
-    """A joint and a rigid stop of it.
+    """A joint with a rigid stop.
 
     Attributes:
         stop: the stop.
@@ -65,7 +65,7 @@ class StopFacing(PairFacing):
 
     @property
     def coordinate_entry(self) -> int:
-        """Entry of the coordinate of the joint in the unknowns, whose row is the balance along it."""
+        """Entry of the coordinate of the joint in the unknowns, whose row is the balance along the joint."""
         return int(self.model.discrete.coordinate(self.stop.placed).start)
 
 
@@ -86,7 +86,7 @@ def struck_in_steps(model: Model) -> list[Facing]:
 
 
 def struck_beside_friction(model: Model) -> list[Facing]:
-    """All pairs that steps of simulated motions with friction keep apart: rigid cables too, behind obstacles."""
+    """All pairs that simulated steps with friction keep apart: contacts with obstacles, rigid cables and stops."""
     return [*facings(model), *pair_facings(model)]
 
 

@@ -1,4 +1,4 @@
-"""Warnings of loads that come suddenly: they limit how exact a motion is on any number of modes."""
+"""Warnings of sudden loads, which limit the accuracy of a motion on any number of modes."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from cosserat_casadi.motion.motion_start import Start
 from cosserat_casadi.motion.moving_inputs import MovingInputs
 
 OUT_OF_BALANCE = 1e-6
-"""Residual of statics, without unit, at which a start is no equilibrium."""
+"""Dimensionless residual of statics above which a start is not an equilibrium."""
 
 STIRRED = 1e-6
-"""Displacement by strains over that by all unknowns, as they begin to move, from which a rod is deformed."""
+"""Initial displacement by strains, over the displacement by all unknowns, above which a rod is deformed."""
 
 AT_ONCE = (
     "The motion starts out of balance: loads act at once from t = 0 on. Waves of all lengths run along the rods, which "
     "modes resolve slowly."
 )
-"""Warning of loads that act at once at the start."""
+"""Warning of loads that act suddenly at the start."""
 
 
 def is_sudden(history: History, start: Start, moving: MovingInputs, duration: float) -> bool:
@@ -30,13 +30,13 @@ def is_sudden(history: History, start: Start, moving: MovingInputs, duration: fl
 
 
 def warnings(history: History, start: Start, moving: MovingInputs, duration: float) -> list[str]:
-    """Sentences on loads that come suddenly.
+    """Warnings of sudden loads.
 
     Args:
         history: the motion.
-        start: how it begins.
+        start: start of the motion.
         moving: the inputs over time.
-        duration: of the motion, s.
+        duration: duration of the motion, s.
     """
     at_start = [AT_ONCE] if _starts_at_once(history, start, moving, duration) else []
     jumps: dict[str, list[float]] = {}
@@ -54,7 +54,7 @@ def _starts_at_once(history: History, start: Start, moving: MovingInputs, durati
 
 
 def _jumping(name: str, times: list[float]) -> str:
-    """The sentence on an input that jumps at these times, s."""
+    """Warning of an input that jumps at these times, s."""
     when = f"at {times[0]:g} s"
     if len(times) > 1:
         when = f"{len(times)} times from {times[0]:g} s to {times[-1]:g} s"
@@ -70,7 +70,7 @@ def _deforms(history: History) -> bool:
 
 
 def _loaded_at_once(history: History, start: Start, moving: MovingInputs) -> bool:
-    """Whether the start is out of balance: loads that were not there act from t = 0 on."""
+    """Whether the start is out of balance, because loads act suddenly from t = 0 on."""
     if start.phases is not None and start.phases.touches:
         # Obstacles hold the rods.
         return False

@@ -1,12 +1,12 @@
-"""Functions for friction of exact contact in motion: how a touching point slides along an obstacle or another rod.
+"""Functions for friction of exact contact in motion: sliding of a touching point along an obstacle or another rod.
 
 A section with the centre c and the radius ρ touches at c − ρ n, with n the normal of the obstacle. This material point
 has the velocity ċ + ω × (−ρ n). Positions and directors between nodes follow the polynomials through the nodes. Forces
-act by the transpose of the derivatives of sliding, so friction takes force times velocity, to rounding.
+act by the transpose of the derivatives of sliding, so the power of friction is force times velocity, to rounding.
 
-Sections of two rods touch at the point that divides the way between their centres as their radii do. Each rod has a
-velocity at this point, and the sliding is the difference of both. Friction acts on both rods at this one point, which
-leaves their momentum and angular momentum together as they are.
+Sections of two rods touch at the point that divides the line between their centres in the ratio of their radii. Each
+rod has a velocity at this point, and the sliding is their difference. Friction acts on both rods at this one point,
+which conserves their total momentum and angular momentum.
 """
 
 from __future__ import annotations
@@ -41,9 +41,9 @@ class SurfaceSliding:
     def _symbols(self) -> list[ca.MX]:
         """Unknowns, n×1; inputs and parameters, k×1; rates of both, 1/s; the section, (M + s)×1; an axis, 3×1.
 
-        The section consists of the weights of the M nodes and, behind them, its abscissa X. Of two rods it has the
-        weights of the nodes of both, and both abscissae: s is 2. The axis sets the first tangent of the surface: its
-        part along the surface, normalised.
+        The section consists of the weights of the M nodes, followed by its abscissa X; for two rods, of the weights of
+        the nodes of both, followed by both abscissae, so that s is 2. The first tangent of the surface is the part of
+        the axis along the surface, normalised.
         """
         model = self.facing.model
         size, count = model.size, stacked_size(model)
@@ -59,7 +59,7 @@ class SurfaceSliding:
         return [ca.MX.sym(name, rows) for name, rows in sizes.items()]
 
     def _sliding(self, section: Matrix) -> tuple[Matrix, Matrix]:
-        """Velocity along both tangents, in lengths per second, and parts of the rod's direction along them, 2×1 each.
+        """Velocity along both tangents, in lengths per second, and components of the rod's direction, 2×1 each.
 
         Args:
             section: weights of the nodes, then the abscissae, (M + s)×1.
@@ -140,10 +140,10 @@ def _radius(side: Facing, X: Matrix) -> Matrix:
 
 
 def _material(rotation: Matrix, arm: Matrix) -> Matrix:
-    """Parts of an arm along directors, 3×1, m, whose sum is the arm.
+    """Components of an arm along the directors, 3×1, m.
 
-    Directors between nodes are across each other only as exactly as polynomials are: forces at one point of two rods
-    would have a moment left by that.
+    Interpolated directors are orthogonal only up to the error of polynomials, so they are inverted: otherwise forces at
+    one point of two rods would leave a moment.
     """
     first, second, third = ca.horzsplit(rotation)
     across = [ca.cross(second, third), ca.cross(third, first), ca.cross(first, second)]

@@ -1,7 +1,7 @@
-"""How long an error of velocity acts while rods touch: until the next event of contact makes velocities anew.
+"""Time during which an error of velocity acts while rods touch: until the next contact event resets velocities.
 
-When that comes is not known beforehand. It is some swings of a rod away, or some times that it falls its length in:
-neither depends on how long the motion is watched.
+The time of that event is not known beforehand. It is estimated as some swings of a rod, or some times of a fall by its
+length: neither depends on the duration of the motion.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ from cosserat_casadi.scene.load_records import Gravity
 from cosserat_casadi.scene.rod_records import Rod
 
 SLOWEST_ROOT = 1.87510407
-"""Least root k of cos k cosh k = −1: a rod that is clamped at one end swings at k² √(EI/ρA)/ℓ², its slowest rate."""
+"""Least root k of cos k cosh k = −1: k² √(EI/ρA)/ℓ² is the lowest angular frequency of a cantilever rod."""
 
 RAYLEIGH = 33.0 / 140.0
-"""Share of a rod's mass that swings as one at its end does (Lord Rayleigh, *The Theory of Sound*, 1877, chapter 8)."""
+"""Share of a rod's mass that counts as mass at its end (Lord Rayleigh, *The Theory of Sound*, 1877, chapter 8)."""
 
 SWINGS = 3.0
 """Swings, or falls, within which the next event is expected."""
 
 
 def time_between_events(model: Model, duration: float) -> float:
-    """Time in which the next event of contact is expected, s: at most the duration of the motion, s."""
+    """Expected time until the next contact event, s, at most the duration of the motion."""
     scene = model.scene
     carried = sum(body.mass for body in scene.bodies)
     times = [_time_of_swing(_by_its_own_numbers(model, rod), carried) for rod in scene.rods]
@@ -40,18 +40,18 @@ def time_between_events(model: Model, duration: float) -> float:
 
 
 def _by_its_own_numbers(model: Model, rod: Rod) -> DiscreteRod:
-    """A rod whose equations are scaled by the numbers that parameters give it, not by numbers of the file."""
+    """Return a rod scaled by the values of its parameters, not by the numbers in the file."""
     discrete_rod = model.at().discrete.rods[rod.name]
     own = replace(rod_properties(rod), fixed_masses=discrete_rod.properties.fixed_masses)
     return replace(discrete_rod, properties=own)
 
 
 def _time_of_swing(rod: DiscreteRod, carried: float) -> float:
-    """Period of the slowest swing of a rod clamped at one end with a mass at the other, s; infinite without any mass.
+    """Period of the slowest swing of a cantilever rod with a mass at its tip, s; infinite without any mass.
 
     Args:
         rod: the rod.
-        carried: the mass at its other end, kg.
+        carried: the mass at its tip, kg.
     """
     mass = rod_mass(rod) + carried / RAYLEIGH
     if mass == 0.0:

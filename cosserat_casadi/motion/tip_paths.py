@@ -1,7 +1,7 @@
-"""The paths that a tolerance of a motion binds: paths of tips, of bases that move and of bodies, and how they turn.
+"""The paths that a tolerance of a motion bounds: positions and rotations of tips, moving bases and bodies.
 
-A tip that a support or a joint holds is where it is held: such a rod is watched between its ends too, at the sections
-of :func:`watched_sections`, as at rest.
+The tip of a rod that a support or a joint holds says little: such a rod is also watched between its ends, at the
+sections of :func:`watched_sections`, as at rest.
 """
 
 from __future__ import annotations
@@ -27,17 +27,17 @@ from cosserat_casadi.motion.repeated_call import external
 from cosserat_casadi.scene.constraint_records import Body
 
 PATHS = "motion_paths"
-"""Name in C of the function of all that moves along the watched paths."""
+"""Name in C of the function of watched paths."""
 
 WATCHED = 401
-"""Times at which paths are compared, evenly spaced."""
+"""Number of evenly spaced times at which paths are compared."""
 
 
 @dataclass(frozen=True)
 class Paths:
     """Paths of watched sections, moving bases and bodies at T times, by which two motions are compared.
 
-    A rod that only twists moves neither its tip nor any point of its axis: its tip's turn about the tangent counts too.
+    A rod that only twists moves no point of its axis, so that the rotation of its tip about the tangent counts too.
 
     Attributes:
         points: positions of sections, of bases that have unknowns and of points of bodies over the length,
@@ -50,10 +50,10 @@ class Paths:
 
 
 class WatchedStates(NamedTuple):
-    """States of a motion at the T times at which paths are compared, as far as it reaches them.
+    """States of a motion at those T times of comparison that it reaches.
 
     Attributes:
-        times: shape (T,), s.
+        times: times, shape (T,), s.
         x: unknowns, shape (T, model.size).
         inputs: stacked inputs, shape (T, model.inputs.size).
     """
@@ -64,7 +64,7 @@ class WatchedStates(NamedTuple):
 
 
 def watched_states(history: History, duration: float) -> WatchedStates:
-    """The states of a motion at the times at which it is compared with another one of a duration, s."""
+    """Evaluate the states of a motion at the times of comparison in a duration, s."""
 
     def states() -> WatchedStates:
         times = np.linspace(history.begin, duration, WATCHED)
@@ -112,19 +112,19 @@ def _written(model: Model) -> ca.Function:
 
 
 def _frame(function: ca.Function, arguments: Arguments) -> list[Matrix]:
-    """Position and rotation of a tip or a body, written out: what others share with it is found then."""
+    """Inline the position and rotation of a tip or a body, so that terms in common with others are shared."""
     position, _, rotation = function.call([arguments.x, arguments.inputs], True, False)
     return [position, rotation]
 
 
 def paths(model: Model, x: FloatArray, inputs: FloatArray, library: str | None = None) -> Paths:
-    """The paths of all watched sections, moving bases and bodies at T times.
+    """Evaluate the paths of all watched sections, moving bases and bodies at T times.
 
     Args:
         model: the model.
         x: unknowns, shape (T, model.size).
         inputs: stacked inputs, shape (T, model.inputs.size).
-        library: shared object that has :func:`function_of_paths`; None without one.
+        library: shared object that contains :func:`function_of_paths`; None without one.
     """
     function = _in_scalars(model) if library is None else external(PATHS, library)
     points, axes = evaluated(function, x, inputs)
@@ -141,7 +141,7 @@ def _lengths(model: Model, inputs: Matrix) -> dict[str, Matrix]:
 
 
 def _in_scalars(model: Model) -> ca.Function:
-    """The function for CasADi's virtual machine, as scalars where it can be written so: a quarter of the time."""
+    """The function for CasADi's virtual machine, in scalars if possible, which take a quarter of the time."""
     function = function_of_paths(model)
     scalars: ca.Function = kept_with(
         model, "_paths_in_scalars", lambda: function if chooses(function) else function.expand()
@@ -156,9 +156,9 @@ def _places_between(model: Model, rod: str) -> list[float]:
 
 
 def path_distance(first: Paths, second: Paths) -> float:
-    """Largest distance of two sets of paths at the times that both reach, over the length, without unit.
+    """Largest distance of two sets of paths, over the length, at the times that both reach.
 
-    What a section is turned about its tangent counts on an arm of LEVER lengths.
+    The rotation of a section about its tangent counts with a lever arm of LEVER lengths.
     """
     rows = min(len(first.points), len(second.points))
     distances = np.linalg.norm(first.points[:rows] - second.points[:rows], axis=2)
@@ -168,10 +168,10 @@ def path_distance(first: Paths, second: Paths) -> float:
 
 @lru_cache(maxsize=64)
 def watched_arms(body: Body, longest: float) -> FloatArray:
-    """Points of a body that are watched, in its axes, shape (k, 3), m: its origin, and what its inertia would move.
+    """Watched points of a body in its axes, shape (k, 3), m: its origin, and points that represent its inertia.
 
-    These are its centre of mass, and on each axis through it a point at the radius of gyration. For a body with moments
-    of inertia and no mass the radius is LEVER lengths of the longest rod.
+    These are the centre of mass, and on each axis through it a point at the radius of gyration. For a body with moments
+    of inertia but no mass, the radius is LEVER lengths of the longest rod.
     """
     arms = [np.zeros(3)]
     centre = np.asarray(body.centre_of_mass, dtype=float)
@@ -190,7 +190,7 @@ def watched_arms(body: Body, longest: float) -> FloatArray:
 
 
 def _rolls(first: FloatArray, second: FloatArray) -> FloatArray:
-    """Turns about the tangent from one set of sections to another that lies close, shape (T, sections), rad.
+    """Rotation angles about the tangent from one set of sections to another nearby one, shape (T, sections), rad.
 
     Args:
         first: x and y axes of sections, shape (T, sections, 2, 3).

@@ -73,18 +73,18 @@ class MotionOutcome(Enum):
 
     @property
     def label(self) -> str:
-        """The word of the result file."""
+        """Name of the outcome in result files."""
         return self.name.lower()
 
 
 @dataclass(frozen=True)
 class MotionProgress:
-    """How far a simulation is.
+    """Progress of a simulation.
 
     Attributes:
         stage: the work under way, such as "simulating".
-        time: reached, s.
-        duration: to be reached, s.
+        time: time reached, s.
+        duration: time to be reached, s.
         step: size of the present time step, s.
     """
 
@@ -105,8 +105,8 @@ class MotionState:
 
     Attributes:
         x: unknowns, shape (model.size,).
-        v: their rates, 1/s.
-        a: their second derivatives, 1/s².
+        v: rates of the unknowns, shape (model.size,), 1/s.
+        a: second time derivatives of the unknowns, shape (model.size,), 1/s².
         inputs: stacked inputs, shape (model.inputs.size,).
     """
 
@@ -121,13 +121,13 @@ class Energies:
     """Energies of a scene at T times, each of shape (T,), J.
 
     Attributes:
-        kinetic: of rods and bodies.
-        elastic: of the rods.
-        potential: of dead forces, gravity and smooth contact.
-        dissipated: by the damping of rods and of smooth contact, and by friction, since the start.
-        work: done since the start by all other loads, by actuators, and by moving bases and lengths.
-        impacts: lost since the start where cables snapped taut, joints met stops or rods obstacles without a width.
-        imbalance: error of the balance of the other six, relative to the largest energy; without unit.
+        kinetic: kinetic energy of rods and bodies.
+        elastic: elastic energy of the rods.
+        potential: potential energy of dead forces, gravity and smooth contact.
+        dissipated: energy dissipated since the start by damping of rods and of smooth contact, and by friction.
+        work: work since the start of all other loads, of actuators, and of moving bases and lengths.
+        impacts: energy lost since the start as cables snapped taut, joints met stops, or rods met rigid obstacles.
+        imbalance: error of the balance of the other six, over the largest energy, dimensionless.
     """
 
     kinetic: FloatArray
@@ -140,7 +140,7 @@ class Energies:
 
 
 Account = tuple[Energies, Checkpoint | None]
-"""Energies at the times of a motion, and its end, from which another goes on; None where it was not started."""
+"""Energies at the times of a motion, and its end, from which another continues; None if it was not started."""
 
 
 @dataclass(frozen=True)
@@ -152,8 +152,8 @@ class StepStatistics:
         rejected: number of steps that were tried again with a smaller size.
         iterations: Newton iterations of all steps together.
         jacobians: evaluations of the Jacobian.
-        smallest_step: size of the smallest accepted step, s; nan where there is none.
-        largest_step: size of the largest accepted step, s; nan where there is none.
+        smallest_step: size of the smallest accepted step, s; nan without steps.
+        largest_step: size of the largest accepted step, s; nan without steps.
     """
 
     steps: int
@@ -166,30 +166,30 @@ class StepStatistics:
 
 @dataclass(frozen=True, repr=False)
 class Motion(Result):
-    """The end of a simulation; the whole motion only where ``converged`` says so.
+    """The result of a simulation; it is the whole motion only if ``converged`` is true.
 
     Attributes:
         model: the model that was simulated.
         outcome: how the simulation ended.
         message: a sentence for the user.
-        times: of the rows below, shape (T,), s.
+        times: times of the rows, shape (T,), s.
         x: unknowns, shape (T, model.size).
         v: rates of the unknowns, shape (T, model.size), 1/s; without meaning for multipliers and tensions.
         a: second derivatives of the unknowns, shape (T, model.size), 1/s².
         inputs: stacked inputs, shape (T, model.inputs.size).
         error_estimate: estimated error of the paths of tips, bases that move and bodies, and of sections between held
-            ends, relative to the rods' lengths, of space and time together; nan where none was made.
-        statistics: what the time steps took.
-        start: a sentence on how the motion was started.
-        interpolant: the state at a time between the first and the last: the dense output of the steps.
+            ends, relative to the rods' lengths, by space and time together; nan if it was not estimated.
+        statistics: numbers and sizes of the time steps.
+        start: a sentence on the start of the motion.
+        interpolant: function of a time within the motion ↦ state, by the dense output of the steps.
         warnings: sentences on what limits the accuracy, such as a load that jumps.
-        contacts: the sections that touch obstacles without a width at each of the times; empty where there are none.
-        events: impacts and other changes of contact, and of cables that go slack, in their order.
-        account: gives the energies and the end, which few ask for and which take their time.
-        impacts_spread: by how much the energy that impacts took since the motion began is another on the other modes
-            and with the other steps that told the error, J; nan where there were no others.
-        tolerance: error of the paths that was asked for, relative to the rods' lengths; None where none was, and where
-            the error is of the time steps alone.
+        contacts: the sections that touch obstacles without a width at each of the times; empty without any.
+        events: impacts and other changes of contact, and changes of cables that go slack, in order of time.
+        account: function that computes the energies and the end on demand, as that takes time.
+        impacts_spread: difference of the energy lost in impacts since the start from that on the other modes and with
+            the other steps by which the error was estimated, J; nan without others.
+        tolerance: requested error of the paths, relative to the rods' lengths; None if no tolerance was requested, and
+            if the error is that of the time steps alone.
     """
 
     model: Model
@@ -218,7 +218,7 @@ class Motion(Result):
 
     @property
     def end(self) -> Checkpoint | None:
-        """How far the motion has come, for another to go on from; None where it was not started."""
+        """Checkpoint at the end of the motion, from which another can continue; None if it was not started."""
         return self._account[1]
 
     @cached_property
@@ -227,14 +227,14 @@ class Motion(Result):
 
     @property
     def converged(self) -> bool:
-        """Whether the motion was computed to its end, as asked."""
+        """Whether the motion was computed to its end, as requested."""
         return self.outcome is MotionOutcome.COMPLETED
 
     @property
     def within_tolerance(self) -> bool | None:
-        """Whether the estimated error is within the tolerance; None where no tolerance has a meaning.
+        """Whether the estimated error is within the tolerance; None if there is no meaningful tolerance.
 
-        What did not converge is not within any tolerance.
+        A motion that did not converge is not within any tolerance.
         """
         if self.tolerance is None:
             return None
@@ -242,7 +242,7 @@ class Motion(Result):
         return self.converged and self.error_estimate <= self.tolerance
 
     def tip(self, rod: str | None = None) -> Poses:
-        """Poses of a rod's tip, shapes (T, 3) and (T, 4); the name may be left out where there is one rod.
+        """Poses of a rod's tip, shapes (T, 3) and (T, 4); the name may be left out if there is one rod.
 
         Raises:
             KeyError: there is no such rod, or there are several to choose from.
@@ -293,7 +293,7 @@ class Motion(Result):
         return states_of(self.model.joint[name], self.x, self.inputs)
 
     def rubbing(self, index: int) -> tuple[RubbingStretch, ...]:
-        """The stretches that stick or slip on obstacles in a row; none in a scene without friction.
+        """Stretches of rods that stick or slip on obstacles at a row; empty in a scene without friction.
 
         A section that creeps slower than the slip speed sticks.
         """

@@ -1,7 +1,7 @@
-"""Vibration modes of a scene about its equilibrium, with how well the model resolves each.
+"""Vibration modes of a scene about its equilibrium, with the error of each.
 
-The strains that a mode asks for have nothing to do with strains of the equilibrium: modes per strain are raised, level
-by level, until all frequencies that are asked for agree with the level before.
+A vibration mode and the equilibrium need different polynomials: modes per strain are raised, level by level, until all
+requested frequencies agree with the level before.
 """
 
 from __future__ import annotations
@@ -41,29 +41,29 @@ from cosserat_casadi.result import Result
 from cosserat_casadi.spelling import named
 
 DEFAULT_COUNT = 8
-"""Modes that are sought where the caller does not say how many."""
+"""Number of modes that are sought by default."""
 
 SPARE_MODES = 4
-"""Polynomials per strain of the first level beyond the number of modes that are sought."""
+"""Polynomials per strain on the first level, less the number of modes that are sought."""
 
 LEVEL_FACTOR = 1.3
-"""Factor on the polynomials from one level to the next."""
+"""Factor on the number of polynomials from one level to the next."""
 
 MOST_MODES = 48
-"""Polynomials per strain from which on no finer level is tried."""
+"""Polynomials per strain above which no finer level is tried."""
 
 SPARE_NODES = 4
-"""Intervals beyond the number that polynomials and the turn of a rod need: mass is an integral of squares."""
+"""Intervals beyond the number that polynomials and the rotation of a rod need: mass is an integral of squares."""
 
 ROUNDING = 1e-13
-"""Floor of every estimate."""
+"""Least error estimate, relative to an eigenvalue."""
 
 
 WHILE_PRESSED = "So long as every contact presses, and nothing else touches: larger motions lift off and strike."
 """Sentence on small motions of rods in exact contact."""
 
 ABOUT_REST = "They are about rest at the scene's values: the motion of {inputs} in [[motions]] is left aside."
-"""Sentence on small motions of a scene whose inputs move: a rod whose base turns has other frequencies."""
+"""Sentence on small motions of a scene whose inputs move: a rod with a rotating base has other frequencies."""
 
 
 class ModesOutcome(Enum):
@@ -80,7 +80,7 @@ class ModesOutcome(Enum):
 
     @property
     def label(self) -> str:
-        """The word of the result file."""
+        """Name of the outcome in result files."""
         return self.name.lower()
 
 
@@ -89,10 +89,10 @@ class Mode:
     """A small motion δx = Re(vector exp(λ t)).
 
     Attributes:
-        eigenvalue: λ, 1/s; of a conjugate pair the one with positive imaginary part.
+        eigenvalue: λ, 1/s; for a conjugate pair the one with positive imaginary part.
         vector: δx of all unknowns, shape (size,); zero for multipliers and tensions. The largest displacement over
             length, or rotation, of any section is 1.
-        error_estimate: of λ, relative to |λ|; None where it is not estimated.
+        error_estimate: estimated error of λ, relative to |λ|; None if it was not estimated.
     """
 
     eigenvalue: complex
@@ -119,7 +119,7 @@ class Mode:
 
     @property
     def oscillates(self) -> bool:
-        """Whether the motion swings, and does not only grow or decay."""
+        """Whether the motion oscillates, and does not only grow or decay."""
         return self.eigenvalue.imag > 0.0
 
     @property
@@ -129,7 +129,7 @@ class Mode:
 
     @property
     def words(self) -> str:
-        """Kind of the motion in a word, for tables."""
+        """Kind of the motion in one word, for tables."""
         if self.eigenvalue == 0.0:
             return "rigid or neutral"
         if self.oscillates:
@@ -143,12 +143,12 @@ class Modes(Result):
 
     Attributes:
         solution: the equilibrium, on the model whose modes these are.
-        outcome: how the search ended.
-        stability: sentences on what becomes of small motions; where there is no equilibrium, why.
+        outcome: outcome of the search.
+        stability: sentences on the growth or decay of small motions; without an equilibrium, the reason.
         modes: ordered by |λ|, multiplicities repeated, conjugate pairs once; the creep of branches is not among them.
-        spectrum: all eigenvalues of the model, with that creep, in the same order; the larger ones do not belong to the
-            rods, 1/s.
-        slowest: least size of an eigenvalue that is told from zero, 1/s.
+        spectrum: all eigenvalues of the model, including creep, ordered by |λ|, 1/s; the larger ones are not those of
+            the rods.
+        slowest: least |λ| that can be distinguished from zero, 1/s.
     """
 
     solution: Solution
@@ -160,7 +160,7 @@ class Modes(Result):
 
     @property
     def message(self) -> str:
-        """How the search ended and what becomes of small motions, for the user."""
+        """Sentence on the outcome of the search and the stability of small motions, for the user."""
         return f"{self.outcome.value} {self.stability}"
 
     @property
@@ -170,7 +170,7 @@ class Modes(Result):
 
     @property
     def converged(self) -> bool:
-        """Whether there are modes, known to the tolerance where that was asked for."""
+        """Whether there are modes, to the tolerance if one was requested."""
         return self.outcome in (ModesOutcome.RESOLVED, ModesOutcome.NOT_ESTIMATED)
 
     @property
@@ -188,7 +188,7 @@ class Modes(Result):
 
         Args:
             X: abscissae, shape (k,).
-            rod: name of the rod; may be left out where there is one.
+            rod: name of the rod; it may be left out if there is one rod.
         """
         name = self.model.rod_name(rod)
         vectors = np.stack([mode.vector for mode in self.modes], axis=1)
@@ -204,18 +204,18 @@ def small_motions(
     p: FloatArray | None = None,
     contacts: PressingContacts | None = None,
 ) -> SmallMotions:
-    """The linear equations of small motions about unknowns that do not change.
+    """Linearise the equations of motion about constant unknowns.
 
-    Where stress relaxes they have the unknowns of ``model.in_motion``.
+    With stress that relaxes, the equations have the unknowns of ``model.in_motion``.
 
     Args:
         model: the scene.
         x: the unknowns, shape (model.size,).
         inputs: stacked inputs.
-        inputs_rate: rate of the inputs, as of a base that spins steadily; zero where it is left out.
-        inputs_acceleration: acceleration of the inputs; zero where it is left out.
-        p: stacked parameters of a model that has some; else None.
-        contacts: contacts that press, whose forces are among the inputs.
+        inputs_rate: rate of the inputs, for example of a steadily spinning base; zero by default.
+        inputs_acceleration: acceleration of the inputs; zero by default.
+        p: stacked parameters; None for a model without parameters.
+        contacts: pressing contacts, whose forces are among the inputs.
     """
     x = model.with_flows(x)
     model = model.in_motion
@@ -248,7 +248,7 @@ def small_motions(
 
 
 def _quaternion_growth(model: Model, x: FloatArray) -> FloatArray:
-    """Gradients of the norms of the floating frames' quaternions, shape (frames, size)."""
+    """Gradients of the norms of the quaternions of floating frames, shape (frames, size)."""
     discrete = model.discrete
     gradients = np.zeros((len(discrete.frames), model.size))
     for row, (name, frame) in zip(gradients, discrete.frames.items(), strict=True):
@@ -259,12 +259,12 @@ def _quaternion_growth(model: Model, x: FloatArray) -> FloatArray:
 
 
 def modes_at(solution: Solution, count: int | None = None, *, report: Report | None = None) -> Modes:
-    """Modes of a model about one of its equilibria; their errors are not estimated.
+    """Compute the modes of a model about one of its equilibria, without error estimates.
 
     Args:
         solution: the equilibrium.
-        count: how many modes of lowest |λ|; None for all that the model has.
-        report: told the stage.
+        count: number of modes of lowest |λ|; None for all modes of the model.
+        report: callback with the stage.
 
     Raises:
         SceneError: nothing that may move has mass.
@@ -319,21 +319,21 @@ def modes_of(
     progress: Progress | None = None,
     report: Report | None = None,
 ) -> Modes:
-    """Modes of vibration about an equilibrium.
+    """Compute the vibration modes about an equilibrium.
 
-    Each mode of a scene has an estimated error: where the scene fixes modes or nodes they are used as they are, and
-    only the errors are estimated. The modes of a model about one of its equilibria have none.
+    Each mode of a scene has an estimated error; if the scene fixes modes or nodes, they are used as they are, and only
+    the errors are estimated. The modes of a model about one of its equilibria have no error estimates.
 
     Args:
         subject: a validated scene, or a model, which is solved; or an equilibrium.
-        values: inputs by name, where an input that is left out keeps the scene's value; not of an equilibrium.
-        count: how many modes of lowest |λ|; by default eight of a scene, and all that a model has.
-        progress: told the share of the present stage that is done.
-        report: told the stage.
+        values: inputs by name; others keep the scene's values. Not for an equilibrium.
+        count: number of modes of lowest |λ|; by default eight for a scene, and all modes for a model.
+        progress: callback with the share of the present stage that is done.
+        report: callback with the stage.
 
     Raises:
-        ValueError: the count is not positive, or values stand beside an equilibrium.
-        SceneError: a value is refused, more modes are asked for than there are unknowns, or nothing that may move has
+        ValueError: the count is not positive, or values are given with an equilibrium.
+        SceneError: a value is refused, more modes are requested than there are unknowns, or nothing that may move has
             mass.
     """
     if isinstance(subject, Solution):
@@ -358,10 +358,10 @@ def modes_of(
 
 
 def _check_count(scene: scenes.Scene, count: int) -> None:
-    """Refuse more modes than there are unknowns on the level from which on no finer one is tried.
+    """Refuse more modes than there are unknowns on the finest level that is tried.
 
     Raises:
-        SceneError: so many are asked for.
+        SceneError: too many modes are requested.
     """
     rods = sum(own.elements * sum(own.modes) for own in discretise(scene, MOST_MODES).values())
     # A rod's base, and a body, may move in six ways.
@@ -372,7 +372,7 @@ def _check_count(scene: scenes.Scene, count: int) -> None:
 
 
 def _on_fixed(equilibrium: Solution, count: int, report: Report | None) -> Modes:
-    """Modes on the discretisation of an equilibrium, judged by a finer one."""
+    """Compute modes on the discretisation of an equilibrium, with errors by a finer one."""
     own = modes_at(equilibrium, count, report=report)
     witness = modes_at(_finer_equilibrium(equilibrium, FINER_MODES, report), count, report=report)
     # The finer modes are not exact either.
@@ -380,7 +380,7 @@ def _on_fixed(equilibrium: Solution, count: int, report: Report | None) -> Modes
 
 
 def _to_tolerance(equilibrium: Solution, count: int, report: Report | None) -> Modes:
-    """Modes on the first level that agrees with the one before; on the last one where none does."""
+    """Compute modes on the first level that agrees with the level before; on the last level if none does."""
     scene = equilibrium.model.scene
     # Half of the modes bend a rod in one plane, as a rule: a planar rod takes a level or two more.
     enough = min(ceil(count / 2) + SPARE_MODES, MOST_MODES)
@@ -401,7 +401,7 @@ def _finer_equilibrium(coarser: Solution, more: int, report: Report | None) -> S
 
 
 def _on_level(coarser: Solution, polynomials: int, report: Report | None) -> Solution:
-    """The equilibrium of a coarser solution, with this number of polynomials for each strain and element."""
+    """Solve for the equilibrium of a coarser solution, with this number of polynomials for each strain and element."""
     scene = without_contacts(coarser.model.scene)
     nodes = nodes_for_turn(polynomials, largest_turn(coarser)) + SPARE_NODES
     transport = "magnus8" if scene.accuracy.tolerance < TIGHT else "magnus6"
@@ -428,12 +428,12 @@ def _on_level(coarser: Solution, polynomials: int, report: Report | None) -> Sol
 
 
 def _most_modes(solution: Solution) -> int:
-    """Most polynomials that a strain of any rod has."""
+    """Largest number of polynomials of a strain of any rod."""
     return max(max(d.modes, default=0) for d in solution.model.discretisation.values())
 
 
 def _judged(modes: Modes, witness: Modes, safety: float = 1.0) -> Modes:
-    """Modes with the errors that modes of another discretisation give them, times a factor of safety."""
+    """Estimate the errors of modes by those of another discretisation, times a safety factor."""
     if not witness.converged:
         return witness
     if not modes.converged:
@@ -453,13 +453,13 @@ def _judged(modes: Modes, witness: Modes, safety: float = 1.0) -> Modes:
 
 
 def _confirmed(values: ComplexArray, others: ComplexArray) -> npt.NDArray[np.bool_]:
-    """Which eigenvalues another discretisation has too, to half of their growth at least."""
+    """Mask of eigenvalues that another discretisation also has, to within half of their growth."""
     gaps = np.abs(values[:, None] - others).min(axis=1, initial=np.inf)
     return np.asarray(gaps <= np.abs(values.real) / 2)
 
 
 def _distances(values: ComplexArray, others: ComplexArray) -> FloatArray:
-    """Distance of each eigenvalue to its counterpart among others, relative to its size; inf where it has none."""
+    """Distance of each eigenvalue from its counterpart among others, relative to its size; inf without one."""
     distances = np.full(len(values), np.inf)
     left = list(others)
     for index, value in enumerate(values):
@@ -475,7 +475,7 @@ def _distances(values: ComplexArray, others: ComplexArray) -> FloatArray:
 
 
 def check_mass(motions: SmallMotions) -> None:
-    """Refuse a scene that has nothing to swing.
+    """Refuse a scene without modes.
 
     Raises:
         SceneError: nothing may move, or nothing that may move has mass.
@@ -496,13 +496,13 @@ def _without_modes(solution: Solution, outcome: ModesOutcome, why: str) -> Modes
 def stability_sentences(
     values: ComplexArray, believed: npt.NDArray[np.bool_], solution: Solution, slowest: float
 ) -> str:
-    """Sentences on how small motions about an equilibrium grow, swing or decay.
+    """Write sentences on the growth, oscillation or decay of small motions about an equilibrium.
 
     Args:
         values: all eigenvalues of the model.
-        believed: whether an eigenvalue that swings is taken for a motion of the rods, not of the discretisation.
+        believed: whether each oscillating eigenvalue counts as a motion of the rods, not of the discretisation.
         solution: the equilibrium.
-        slowest: least size of an eigenvalue that is told from zero, 1/s.
+        slowest: least |λ| that can be distinguished from zero, 1/s.
     """
     growing = values.real > REAL * np.abs(values)
     swinging = values.imag > 0.0

@@ -1,1 +1,1 @@
-"""Equations and their numbers, knowing nothing of rods: Newton, Broyden, continuation, arclength, descent, motion."""
+"""Numerical methods independent of rods: Newton, Broyden, continuation, arclength, descent, motion."""

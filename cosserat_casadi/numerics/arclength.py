@@ -21,15 +21,15 @@ SINGULAR = 1e-9
 """A singular value below this share of the largest is zero to rounding."""
 
 BEHIND = 1e-4
-"""How far behind a corner a path goes on: growth of the side of a pair that was zero before it."""
+"""Distance behind a corner at which a path goes on: growth of the side of a pair that was zero before it."""
 
 STILL_HELPS = 0.5
-"""Share of the residual that a step below the tolerance may leave and count as a help."""
+"""Largest ratio of residuals after and before a step below the tolerance at which steps still help."""
 
 
 @dataclass(frozen=True)
 class ArcSettings:
-    """Limits of a path in arclength; x counts in its 2-norm, about one radian of bending a unit, λ as it is.
+    """Limits of a path in arclength, in the 2-norm of (x, λ); one unit of x is about one radian of bending.
 
     Attributes:
         first: first step.
@@ -38,11 +38,11 @@ class ArcSettings:
         shortest: step below which the path counts as stalled.
         steps: most steps, taken or refused.
         tolerance: bound on the relative norm of the residual.
-        aim: norm at which a correction stops; between it and the tolerance steps go on while they help.
-        grow_below: corrections up to which the next step grows.
-        reject_above: corrections beyond which a step is refused.
+        aim: norm at which a correction stops; between it and the tolerance, steps go on while they help.
+        grow_below: most corrections after which the next step grows.
+        reject_above: most corrections of an accepted step.
         min_cosine: smallest cosine between the tangents at the ends of a step.
-        max_distance: longest way from prediction to correction, relative to the step.
+        max_distance: largest distance from prediction to correction, relative to the step.
     """
 
     first: float = 0.02
@@ -60,11 +60,11 @@ class ArcSettings:
 
 @dataclass(frozen=True)
 class Monitor:
-    """Numbers that change sign where branches meet.
+    """Test functions that change sign where branches meet.
 
     Attributes:
         values: (y of length n + 1, jacobian n×n, bordered (n+1)×(n+1)) ↦ real numbers in ascending order.
-        feels_limits: whether one of these numbers changes sign at a limit point too.
+        feels_limits: whether one of these numbers also changes sign at a limit point.
     """
 
     values: Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
@@ -77,9 +77,9 @@ class ArcPoint:
 
     Attributes:
         y: unknowns and load factor, shape (n + 1,).
-        tangent: of length one, in the direction of travel, shape (n + 1,).
-        length: arclength from the start of the curve, steps added up.
-        spectrum: the monitor's values, ascending.
+        tangent: unit tangent in the direction of travel, shape (n + 1,).
+        length: arclength from the start of the curve, as the sum of steps.
+        spectrum: values of the monitor, ascending.
     """
 
     y: FloatArray
@@ -99,7 +99,7 @@ class ArcPoint:
 
     @property
     def load_factor_rate(self) -> float:
-        """Rate dλ/ds with the arclength; zero at a limit point."""
+        """Derivative dλ/ds by the arclength; zero at a limit point."""
         return float(self.tangent[-1])
 
 
@@ -111,10 +111,10 @@ class Curve:
         path: equations that depend on a load factor.
         monitor: functions whose zeros are the events of the path.
         settings: limits.
-        rows: what each equation is multiplied by where linear systems are solved, shape (n,); None where all are of one
-            size. Residuals are measured without.
-        singular: share of the largest singular value below which one is zero to rounding.
-        pairs: equations of pairs of which one is zero, whose curve has a corner where they change places.
+        rows: scale factor of each equation in linear systems, shape (n,); None for equations of equal size. Residuals
+            are measured without scaling.
+        singular: share of the largest singular value below which one counts as zero.
+        pairs: complementarity equations, whose curve has a corner where the zero side of a pair changes.
     """
 
     path: Path
@@ -131,7 +131,7 @@ class Curve:
         return self.path.residual(x, load_factor)
 
     def derivative(self, y: FloatArray) -> FloatArray:
-        """Derivative ∂g/∂y, its rows multiplied, shape (n, n + 1)."""
+        """Derivative ∂g/∂y with scaled rows, shape (n, n + 1)."""
         x = y[:-1]
         load_factor = float(y[-1])
         jacobian = dense(self.path.jacobian(x, load_factor))
@@ -142,7 +142,7 @@ class Curve:
         return np.asarray(self.rows[:, None] * derivative)
 
     def point(self, y: FloatArray, direction: FloatArray, length: float) -> ArcPoint | None:
-        """The point at y, its tangent on the side of a direction; None where a number is not finite."""
+        """Make the point at y, with the tangent nearest to a direction; None if a number is not finite."""
         derivative = self.derivative(y)
         tangent = tangent_along(derivative, direction, self.singular)
         if tangent is None:
@@ -157,15 +157,15 @@ class Curve:
     ) -> tuple[FloatArray, int] | None:
         """Find where the curve meets a hyperplane normal·y = level near a start.
 
-        Steps of minimum norm: along a direction in which the equations are neutral nothing moves.
+        The steps have minimum norm, so that nothing moves along neutral directions.
 
         Args:
             start: shape (n + 1,).
-            normal: of the plane, shape (n + 1,).
-            level: by default that of the plane through the start.
+            normal: normal of the plane, shape (n + 1,).
+            level: level of the plane, by default the level at the start.
 
         Returns:
-            unknowns and load factor, shape (n + 1,), and the steps that it took; None where Newton's method does not
+            unknowns and load factor, shape (n + 1,), and the number of steps; None if Newton's method does not
             converge.
         """
         limits = self.settings
@@ -198,7 +198,7 @@ class Curve:
         return y, limits.reject_above
 
     def at(self, start: FloatArray, load_factor: float) -> FloatArray | None:
-        """Find the unknowns at a load factor near a start, both of shape (n,); None where no step leads there."""
+        """Find the unknowns at a load factor near a start, both of shape (n,); None if no steps converge."""
         across_loads = np.append(np.zeros_like(start), 1.0)
         corrected = self.correct(np.append(start, load_factor), across_loads)
         if corrected is None:
@@ -206,7 +206,7 @@ class Curve:
         return corrected[0][:-1]
 
     def bounded(self, current: ArcPoint, step: float) -> float:
-        """A step, cut to what the settings allow at a point."""
+        """Limit a step to the largest one that the settings allow at a point."""
         limits = self.settings
         # Near a limit point λ stands still and bounds nothing.
         rate = max(abs(current.load_factor_rate), 1e-3)
@@ -214,7 +214,7 @@ class Curve:
         return min(step, limits.longest, within_load)
 
     def advance(self, current: ArcPoint, step: float) -> tuple[ArcPoint, int] | None:
-        """The point one step on, and the steps of its correction; None where it may lie on another branch."""
+        """Make the point one step on, and count its corrections; None if it may be on another branch."""
         predicted = current.y + step * current.tangent
         corrected = self.correct(predicted, current.tangent)
         if corrected is None:
@@ -234,9 +234,9 @@ class Curve:
         return point, steps
 
     def round_corner(self, current: ArcPoint) -> ArcPoint | None:
-        """The point just behind a corner next to a point; None where there is no corner.
+        """Find the point just behind a corner next to a point; None if there is no corner.
 
-        The gradient of a pair's equation is the gradient of its side that is zero: behind the corner this side grows.
+        The gradient of a pair's equation is that of its zero side; behind the corner this side grows.
         """
         derivative = self.derivative(current.y)
         for number in self.pairs:
@@ -258,16 +258,16 @@ class Curve:
 def tangent_along(derivative: FloatArray, direction: FloatArray, singular: float = SINGULAR) -> FloatArray | None:
     """Unit tangent of g(y) = 0: the direction, projected on the null space of ∂g/∂y.
 
-    Where branches meet, or a symmetry leaves a neutral direction, that space has more than one dimension: the
+    Where branches meet, or with a neutral direction by symmetry, that space has more than one dimension: the
     projection goes straight on and does not drift.
 
     Args:
         derivative: shape (n, n + 1).
         direction: shape (n + 1,).
-        singular: share of the largest singular value below which one is zero.
+        singular: share of the largest singular value below which one counts as zero.
 
     Returns:
-        shape (n + 1,); None where a number is not finite, or the direction is across the null space.
+        the tangent, shape (n + 1,); None if a number is not finite, or the direction is orthogonal to the null space.
     """
     basis = null_space(derivative, singular)
     if basis is None:
@@ -280,7 +280,7 @@ def tangent_along(derivative: FloatArray, direction: FloatArray, singular: float
 
 
 def null_space(derivative: FloatArray, singular: float = SINGULAR) -> FloatArray | None:
-    """Orthonormal basis of the null space of ∂g/∂y to rounding, shape (n + 1, k) with k ≥ 1; None if not finite."""
+    """Orthonormal basis of the null space of ∂g/∂y up to rounding, shape (n + 1, k) with k ≥ 1; None if not finite."""
     if not np.all(np.isfinite(derivative)):
         return None
     _, values, rows = np.linalg.svd(derivative)

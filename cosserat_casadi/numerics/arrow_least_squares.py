@@ -1,4 +1,4 @@
-"""Nonlinear least squares with unknowns that all blocks of data share, and unknowns of single blocks ("own" here).
+"""Nonlinear least squares with unknowns shared by all blocks of data, and unknowns of single blocks ("own" here).
 
 A Levenberg–Marquardt method with bounds. The Jacobian is a block arrow: rows of block b see the shared unknowns and the
 block's. Unknowns of the blocks are eliminated block by block with orthogonal transformations, which is the Schur
@@ -7,11 +7,10 @@ J. J. Moré, *The Levenberg–Marquardt algorithm*, Lecture Notes in Mathematics
 Nielsen, *Damping parameter in Marquardt's method*, DTU 1999 (damping); C. Kanzow, N. Yamashita, M. Fukushima, J.
 Comput. Appl. Math. 172, 2004 (projection on bounds).
 
-Where derivatives jump between a state and the one that a step leads to, a step that fails is followed by one along the
-kink. Where none along it lessens the sum, and both sides rise from it, the sum is least. A kink is a surface in the
-unknowns over which residuals are continuous and derivatives jump. Two states on either side of a kink have linear
-models r₁ + J₁ (x − x₁) and r₂ + J₂ (x − x₂), which are equal on it: so J₁ − J₂ = u gᵀ has rank one, g is normal to the
-kink, and uᵀ of the difference of both models is zero there.
+A kink is a surface of unknowns where residuals are continuous but derivatives jump. If a step across a kink fails, a
+step along the kink follows. If no step along it reduces the sum, and the sum rises to both sides, it is a minimum. Two
+states on either side of a kink have linear models r₁ + J₁ (x − x₁) and r₂ + J₂ (x − x₂), which are equal on it: so
+J₁ − J₂ = u gᵀ has rank one, g is normal to the kink, and uᵀ times the difference of both models is zero there.
 """
 
 from __future__ import annotations
@@ -29,13 +28,13 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.robust_loss import Loss
 
 WEIGHT = 1e6
-"""Weight of the row that keeps a step on a kink, relative to the rows of the block."""
+"""Weight of the row that keeps a step on a kink, over the rows of the block."""
 
 MOST_ITERATIONS = 200
-"""Steps tried, at most."""
+"""Most steps that are tried."""
 
 DECREASE = 1e-13
-"""Predicted decrease of half the sum of squares at which to stop: a step in standard deviations is about its root."""
+"""Predicted decrease of half the sum of squares at which to stop: about the square of a step in standard deviations."""
 
 RELATIVE_DECREASE = 1e-14
 """Predicted decrease over half the sum of squares at which to stop."""
@@ -44,35 +43,35 @@ FIRST_DAMPING = 1e-3
 """Damping of the first step relative to the squares of the columns."""
 
 MOST_RATIO = 1.5
-"""Ratio by which one step may change a positive unknown: a linear model would let a modulus vanish."""
+"""Largest ratio by which one step may change a positive unknown, as a linear model could make a modulus vanish."""
 
 BACK_OFF = 10.0
-"""Growth of the damping where a step leads to no state at all."""
+"""Growth factor of the damping after a step at which the evaluation fails."""
 
 HARDLY_DAMPED = 1e-12
-"""Damping that leaves a step as it is, but for directions that no datum sees."""
+"""Damping so small that it changes a step only in directions on which no datum depends."""
 
 LARGEST_DAMPING = 1e12
 """Damping beyond which a step is too small to change anything."""
 
 SUFFICIENT = 1e-4
-"""Share of the predicted decrease that a step must bring."""
+"""Least share of the predicted decrease for a step to be accepted."""
 
 MOST_SETS = 100
-"""Sets of unknowns at their ends that one step is tried with; the sum of squares falls with each set."""
+"""Most active sets of bounds that one step tries; the sum of squares falls with each set."""
 
 ROUNDING = 1e-9
-"""Predicted decrease of half the sum of squares, in squared standard deviations, that evaluation errors may hide."""
+"""Predicted decrease of half the sum of squares, squared standard deviations, that evaluation errors may hide."""
 
 MEETING = 1e-4
 """Difference of both sides of a kink, relative to one more than half the sum of squares, up to which it is known."""
 
 
 class FitState(Protocol):
-    """Residuals of a problem at some unknowns, with all that its Jacobian needs.
+    """Residuals of a problem at some unknowns, with the data that its Jacobian needs.
 
     Attributes:
-        residual: differences in standard deviations, all blocks one after the other, shape (m,).
+        residual: differences in standard deviations, block by block, shape (m,).
     """
 
     @property
@@ -87,18 +86,18 @@ class BlockResiduals(Protocol[StateType]):
     """Residuals of blocks.
 
     Attributes:
-        offsets: where the rows of each block begin, and at the end their number, shape (blocks + 1,).
+        offsets: first row of each block, followed by the number of rows, shape (blocks + 1,).
     """
 
     @property
     def offsets(self) -> npt.NDArray[np.int64]:
-        """Where the rows of each block begin, and at the end their number, shape (blocks + 1,)."""
+        """First row of each block, followed by the number of rows, shape (blocks + 1,)."""
 
     def at(self, shared: FloatArray, own: FloatArray, near: StateType) -> StateType | None:
-        """The state at shared unknowns, (n,), and unknowns of the blocks, (blocks, k); None where evaluation fails."""
+        """Evaluate the state at shared unknowns, (n,), and unknowns of blocks, (blocks, k); None if that fails."""
 
     def jacobian(self, state: StateType) -> FloatArray:
-        """Derivatives of each residual with the shared unknowns, then with those of its block, shape (m, n + k)."""
+        """Derivatives of each residual by the shared unknowns, then by those of its block, shape (m, n + k)."""
 
 
 @dataclass(frozen=True)
@@ -108,10 +107,10 @@ class Limits:
     Attributes:
         lower: least values, shape (n,).
         upper: largest values, shape (n,).
-        mean: expected values, shape (n,); any where nothing is expected.
-        weight: reciprocal of the standard deviation of the expected value, shape (n,); 0 where nothing is expected.
-        ratios: whether an unknown is positive and its changes count by their ratio, as changes of a modulus do: then
-            one step changes it by MOST_RATIO at most; shape (n,).
+        mean: expected values, shape (n,); arbitrary without a prior.
+        weight: reciprocal of the standard deviation of the prior, shape (n,); 0 without a prior.
+        ratios: whether an unknown is positive and changes by ratios, like a modulus, so that one step changes it by at
+            most MOST_RATIO; shape (n,).
     """
 
     lower: FloatArray
@@ -121,41 +120,41 @@ class Limits:
     ratios: npt.NDArray[np.bool_]
 
     def with_blocks(self, own: Limits, blocks: int) -> Limits:
-        """Limits of shared unknowns, followed by limits of the unknowns of each block."""
+        """Append limits of the unknowns of each block to those of the shared unknowns."""
         pairs = zip(astuple(self), astuple(own), strict=True)
         return Limits(*(np.concatenate([of_shared, np.tile(of_own, blocks)]) for of_shared, of_own in pairs))
 
     def clipped(self, values: FloatArray) -> FloatArray:
-        """Values brought into their range."""
+        """Clip values to their range."""
         return np.clip(values, self.lower, self.upper)
 
     def expected(self, values: FloatArray) -> FloatArray:
-        """Expected values within their bounds; these values, within the bounds too, where nothing is expected."""
+        """Expected values, or ``values`` without a prior, both clipped to the bounds."""
         return self.clipped(np.where(self.weight > 0.0, self.mean, values))
 
     def within_step(self, values: FloatArray) -> Limits:
-        """Bounds and priors, narrowed to one step from these values."""
+        """Limits with bounds narrowed to one step from these values."""
         lower = np.where(self.ratios, values / MOST_RATIO, -np.inf)
         upper = np.where(self.ratios, values * MOST_RATIO, np.inf)
         return replace(self, lower=np.maximum(lower, self.lower), upper=np.minimum(upper, self.upper))
 
     def residual(self, values: FloatArray) -> FloatArray:
-        """Differences from the expected values in standard deviations, shape as the values."""
+        """Differences from the expected values, in standard deviations, shape as the values."""
         return (values - self.mean) * self.weight
 
     def at_end(self, values: FloatArray) -> npt.NDArray[np.bool_]:
-        """Which unknowns are at an end of their range, shape as the values."""
+        """Mask of the unknowns at an end of their range, shape as the values."""
         return (values <= self.lower) | (values >= self.upper)
 
     def held(self, values: FloatArray, gradient: FloatArray) -> npt.NDArray[np.bool_]:
-        """Which unknowns are at a bound that the descent would cross, shape as the values."""
+        """Mask of the unknowns at a bound that the descent would cross, shape as the values."""
         at_lower = (values <= self.lower) & (gradient > 0)
         at_upper = (values >= self.upper) & (gradient < 0)
         return at_lower | at_upper
 
 
 class FitOutcome(Enum):
-    """How a fit ends."""
+    """Outcome of a fit."""
 
     CONVERGED = "No step lessens the misfit any more."
     AT_KINK = "The misfit is least where its derivatives jump."
@@ -165,16 +164,16 @@ class FitOutcome(Enum):
 
 @dataclass(frozen=True)
 class Fit(Generic[StateType]):
-    """The end of a fit.
+    """Result of a fit.
 
     Attributes:
         shared: shared unknowns, shape (n,).
         own: unknowns of each block, shape (blocks, k).
-        state: what the problem knows there.
-        cost: half the sum of what residuals and priors cost.
-        iterations: steps tried.
-        outcome: how it ended.
-        beyond: the state on the other side of a kink that steps from here have met; None where they met none.
+        state: state of the problem there.
+        cost: half the sum of the costs of residuals and priors.
+        iterations: number of steps tried.
+        outcome: outcome of the fit.
+        beyond: the state on the other side of a kink that steps from here have met; None without a kink.
     """
 
     shared: FloatArray
@@ -190,16 +189,16 @@ class Fit(Generic[StateType]):
 class ArrowStep:
     """A weighted least-squares problem, linear in the changes of the unknowns.
 
-    All N = n + blocks · k unknowns stand in one row: shared unknowns, then those of one block after the other.
+    All N = n + blocks · k unknowns are one vector: shared unknowns, then those of each block in turn.
 
     Attributes:
-        residual: shape (m,).
-        derivatives: of each row with the shared unknowns, then with those of its block, shape (m, n + k).
-        offsets: where the rows of each block begin, and at the end their number, shape (blocks + 1,).
+        residual: residuals, shape (m,).
+        derivatives: derivatives of each row by the shared unknowns, then by those of its block, shape (m, n + k).
+        offsets: first row of each block, followed by the number of rows, shape (blocks + 1,).
         shared: number n of shared unknowns.
-        weights: of the priors, shape (N,).
+        weights: weights of the priors, shape (N,).
         prior_residual: residuals of the priors, shape (N,).
-        held: unknowns that must not change, shape (N,).
+        held: mask of the unknowns that must not change, shape (N,).
     """
 
     residual: FloatArray
@@ -216,12 +215,12 @@ class ArrowStep:
         return int(self.derivatives.shape[1]) - self.shared
 
     def of_blocks(self, values: npt.NDArray[Any]) -> npt.NDArray[Any]:
-        """Values of the unknowns of each block, shape (blocks, k), from values of all unknowns, shape (N,)."""
+        """Select the unknowns of each block, shape (blocks, k), from all unknowns, shape (N,)."""
         return values[self.shared :].reshape(len(self.offsets) - 1, self.own)
 
     @property
     def column_sizes(self) -> FloatArray:
-        """Norms of the columns with their priors, of unknowns of blocks the mean over all blocks, shape (N,)."""
+        """Norms of the columns with their priors, for unknowns of blocks the mean over all blocks, shape (N,)."""
         squares = np.sum(self.derivatives**2, axis=0)
         blocks = len(self.offsets) - 1
         of_blocks = np.tile(squares[self.shared :] / blocks, blocks)
@@ -229,7 +228,7 @@ class ArrowStep:
 
     @cached_property
     def _triangles(self) -> list[FloatArray]:
-        """Triangle of each block, of [its unknowns, shared unknowns, residual], which replaces its rows."""
+        """Triangular factor of each block, of [its unknowns, shared unknowns, residual], which replaces its rows."""
         n, k = self.shared, self.own
         by_shared = np.where(self.held[:n], 0.0, self.derivatives[:, :n])
         rows = np.hstack([self.derivatives[:, n:], by_shared, self.residual[:, None]])
@@ -248,10 +247,10 @@ class ArrowStep:
         return triangles
 
     def eliminated(self, damping: FloatArray) -> tuple[FloatArray, list[FloatArray]]:
-        """The remaining rows of [shared, residual], and for each block the rows from which its unknowns follow.
+        """Eliminate the unknowns of blocks; return the rows of [shared, residual], and rows for each block's unknowns.
 
         Args:
-            damping: rows that are added to the unknowns, of which those of the blocks count here, shape (N,).
+            damping: damping of the unknowns, of which that of the blocks counts here, shape (N,).
         """
         n, k = self.shared, self.own
         if not k:
@@ -269,10 +268,10 @@ class ArrowStep:
         return np.vstack(left), eliminations
 
     def step(self, damping: FloatArray) -> FloatArray:
-        """The change of the unknowns with the least damped sum, shape (N,).
+        """Solve for the change of the unknowns with the least damped sum, shape (N,).
 
         Args:
-            damping: rows that are added to the unknowns, shape (N,), positive.
+            damping: damping of the unknowns, shape (N,), positive.
         """
         n, k = self.shared, self.own
         left, eliminations = self.eliminated(damping)
@@ -288,7 +287,7 @@ class ArrowStep:
         return np.concatenate(changes)
 
     def gradient(self, changes: FloatArray) -> FloatArray:
-        """Gradient of half the sum of squares where the unknowns have changed by these amounts, shape (N,)."""
+        """Gradient of half the sum of squares after these changes of the unknowns, shape (N,)."""
         by_row = (self.residual + self._change(changes))[:, None] * self.derivatives
         gradient = self.weights * (self.prior_residual + self.weights * changes)
         gradient[: self.shared] += by_row[:, : self.shared].sum(axis=0)
@@ -297,11 +296,11 @@ class ArrowStep:
         return gradient
 
     def with_changes(self, changes: FloatArray, held: npt.NDArray[np.bool_]) -> ArrowStep:
-        """The problem after some unknowns have changed, and are held there.
+        """Return the problem after some unknowns have changed, and are held there.
 
         Args:
-            changes: of the unknowns, shape (N,); zero for free unknowns.
-            held: unknowns that are held, shape (N,).
+            changes: changes of the unknowns, shape (N,); zero for free unknowns.
+            held: mask of the unknowns that are held, shape (N,).
         """
         return replace(
             self,
@@ -313,7 +312,7 @@ class ArrowStep:
     def along_kinks(
         self, other: ArrowStep, changes: FloatArray, scales: FloatArray, blocks: npt.NDArray[np.bool_]
     ) -> ArrowStep:
-        """The problem with a row for each kink that parts it from another one, which keeps steps on the kink.
+        """Add a row for each kink between this problem and another one, which keeps steps on the kink.
 
         Args:
             other: the problem on the other side of the kinks.
@@ -335,7 +334,7 @@ class ArrowStep:
         return replace(self, residual=whole[:, 0], derivatives=whole[:, 1:], offsets=offsets)
 
     def decrease(self, changes: FloatArray) -> float:
-        """How much half the sum of squares falls, by the linear model, where the unknowns change."""
+        """Decrease of half the sum of squares by changes of the unknowns, in the linear model."""
         of_data = _decrease(self.residual, self._change(changes))
         return of_data + _decrease(self.prior_residual, self.weights * changes)
 
@@ -347,12 +346,12 @@ class ArrowStep:
 
 
 def _decrease(residual: FloatArray, change: FloatArray) -> float:
-    """Half the sum of squares of a residual less that after a change."""
+    """Decrease of half the sum of squares of a residual by a change."""
     return -float(change @ (residual + change / 2))
 
 
 def _triangle(rows: FloatArray) -> FloatArray:
-    """The triangle R of rows = Q R, square at least."""
+    """Triangular factor R of rows = Q R, with at least as many rows as columns."""
     triangle = np.asarray(np.linalg.qr(rows, mode="r"))
     missing = rows.shape[1] - len(triangle)
     if missing > 0:
@@ -362,18 +361,18 @@ def _triangle(rows: FloatArray) -> FloatArray:
 
 @dataclass
 class BoundedStep:
-    """The step within bounds that lessens a damped linear least-squares problem most.
+    """The step within bounds that minimises a damped linear least-squares problem.
 
-    Unknowns that a step would take beyond an end stop there, and the others go where the sum is least with those at
-    their ends: cut off alone, they would not go along. One that would rather come back from its end is let go. The sum
-    falls with each such set of unknowns. P. B. Stark, R. L. Parker, *Bounded-variable least-squares*, Computational
-    Statistics 10, 1995; J. Nocedal, S. J. Wright, *Numerical Optimization*, Springer 2006, section 16.5.
+    Unknowns that a step would take beyond a bound stop there, and the others minimise the sum for these values, instead
+    of being merely clipped. An unknown whose gradient points back from its bound is released. The sum falls with each
+    such active set. P. B. Stark, R. L. Parker, *Bounded-variable least-squares*, Computational Statistics 10, 1995;
+    J. Nocedal, S. J. Wright, *Numerical Optimization*, Springer 2006, section 16.5.
 
     Attributes:
         arrow: the problem in the changes of the unknowns.
-        values: the unknowns now, shape (N,).
-        box: limits after the step.
-        damping: rows that are added to the unknowns, shape (N,).
+        values: present unknowns, shape (N,).
+        box: bounds of the unknowns after the step.
+        damping: damping of the unknowns, shape (N,).
     """
 
     arrow: ArrowStep
@@ -382,7 +381,7 @@ class BoundedStep:
     damping: FloatArray
 
     def run(self) -> FloatArray:
-        """The unknowns after the step, shape (N,)."""
+        """Compute the unknowns after the step, shape (N,)."""
         present = self.values
         held = self.arrow.held
         for _ in range(MOST_SETS):
@@ -405,13 +404,13 @@ class BoundedStep:
         return present
 
     def _free_step(self, present: FloatArray, held: npt.NDArray[np.bool_]) -> FloatArray:
-        """Unknowns where the sum is least if some of them stay where they are, whatever the bounds of the rest."""
+        """Minimise the sum for some held unknowns, without the bounds of the others; return the unknowns."""
         given = np.where(held, present - self.values, 0.0)
         step = self.arrow.with_changes(given, held).step(self.damping)
         return np.where(held, present, self.values + step)
 
     def _pulled_back(self, present: FloatArray, held: npt.NDArray[np.bool_]) -> int | None:
-        """Place of the held unknown that the sum pulls back from its end most; None where the sum pulls none back."""
+        """Index of the held unknown that the gradient pulls back most from its bound; None if none is pulled back."""
         changes = present - self.values
         gradient = self.arrow.gradient(changes) + self.damping**2 * changes
         back = held & ~self.box.held(present, gradient)
@@ -420,7 +419,7 @@ class BoundedStep:
         return strongest if pull[strongest] > 0.0 else None
 
     def _to_first_end(self, present: FloatArray, wanted: FloatArray) -> tuple[FloatArray, npt.NDArray[np.bool_]]:
-        """Unknowns on the way to wanted ones where the first unknown meets its end, and which unknowns meet theirs."""
+        """Move towards wanted unknowns until the first one meets its bound; also return the mask of bounded ones."""
         ends = np.where(wanted > present, self.box.upper, self.box.lower)
         beyond = (wanted > self.box.upper) | (wanted < self.box.lower)
         shares = np.full(present.shape, np.inf)
@@ -443,13 +442,13 @@ class _Search(Generic[StateType]):
 
     Attributes:
         values: the unknowns, shape (N,).
-        state: what the problem knows there.
-        cost: half the sum of all that residuals and priors cost.
+        state: state of the problem there.
+        cost: half the sum of the costs of residuals and priors.
         sizes: largest norms of the columns so far, shape (N,).
-        damping: relative to the squares of the columns.
-        growth: factor on the damping where the next step fails.
+        damping: damping relative to the squares of the columns.
+        growth: factor on the damping if the next step fails.
         along: damping of steps along kinks.
-        beyond: the state on the other side of a kink that steps from here have met; None where they met none.
+        beyond: the state on the other side of a kink that steps from here have met; None without a kink.
     """
 
     values: FloatArray
@@ -463,25 +462,25 @@ class _Search(Generic[StateType]):
 
     @property
     def scales(self) -> FloatArray:
-        """Scales of the unknowns, shape (N,); what no datum sees has the scale 1."""
+        """Scales of the unknowns, shape (N,); 1 for an unknown on which no datum depends."""
         return np.where(self.sizes > 0, self.sizes, 1.0)
 
     def take(self, values: FloatArray, state: StateType, cost: float) -> None:
-        """Go on from another state."""
+        """Move to another state."""
         self.values, self.state, self.cost = values, state, cost
         self.growth = 2.0
 
 
 @dataclass(frozen=True)
 class ArrowFit(Generic[StateType]):
-    """A fit to be made.
+    """A fit: problem, limits and loss.
 
     Attributes:
-        problem: its residuals.
+        problem: residuals of the problem.
         shared: limits of the shared unknowns, each entry of shape (n,).
-        own: limits of the unknowns of the blocks, each of shape (k,), the same for all blocks.
-        loss: what residuals cost.
-        kinked: blocks whose derivatives jump between two states, shape (blocks,); by default none.
+        own: limits of the unknowns of a block, each of shape (k,), equal for all blocks.
+        loss: cost of residuals.
+        kinked: (state, state) ↦ mask of blocks whose derivatives jump in between, shape (blocks,); None without kinks.
     """
 
     problem: BlockResiduals[StateType]
@@ -497,13 +496,13 @@ class ArrowFit(Generic[StateType]):
         state: StateType,
         progress: Callable[[int, float], None] | None = None,
     ) -> Fit[StateType]:
-        """Lessen the misfit from a start within the bounds.
+        """Minimise the misfit within the bounds, from a start point.
 
         Args:
             shared: shared unknowns, shape (n,).
             own: unknowns of the blocks, shape (blocks, k).
-            state: what the problem knows there.
-            progress: told the number of steps and the present cost.
+            state: state of the problem there.
+            progress: callback with the number of steps and the present cost.
         """
         values = np.concatenate([shared, own.ravel()])
         search = _Search(values, state, self._cost(values, state), np.zeros(len(values)))
@@ -523,7 +522,7 @@ class ArrowFit(Generic[StateType]):
         return Fit(*self._parted(search.values), search.state, search.cost, tried, outcome, search.beyond)
 
     def linear(self, shared: FloatArray, own: FloatArray, state: StateType) -> ArrowStep:
-        """The problem in the changes of the unknowns, its rows weighted by the loss."""
+        """Linearise the problem in the changes of the unknowns, with rows weighted by the loss."""
         roots = np.sqrt(self.loss.weights(state.residual))
         values = np.concatenate([shared, own.ravel()])
         free = ArrowStep(
@@ -543,7 +542,7 @@ class ArrowFit(Generic[StateType]):
         return self.shared.with_blocks(self.own, len(self.problem.offsets) - 1)
 
     def _parted(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Shared unknowns, shape (n,), and unknowns of the blocks, shape (blocks, k)."""
+        """Split all unknowns into shared ones, shape (n,), and those of the blocks, shape (blocks, k)."""
         n = len(self.shared.lower)
         return values[:n], values[n:].reshape(len(self.problem.offsets) - 1, len(self.own.lower))
 
@@ -552,13 +551,13 @@ class ArrowFit(Generic[StateType]):
         return self.loss.cost(state.residual) + float(priors @ priors) / 2
 
     def _linearised(self, search: _Search[StateType]) -> ArrowStep:
-        """The problem in the changes of the unknowns; the scales of the search grow with its columns."""
+        """Linearise the problem; the scales of the search grow with its columns."""
         arrow = self.linear(*self._parted(search.values), search.state)
         search.sizes = np.maximum(search.sizes, arrow.column_sizes)
         return arrow
 
     def _try_step(self, search: _Search[StateType], arrow: ArrowStep) -> FitOutcome | bool | None:
-        """Try a step; None where it was taken, an outcome where the search ends, False where it failed."""
+        """Try a step; return None if it is taken, an outcome if the search ends, False if the step fails."""
         values = self._stepped(search, arrow, search.damping)
         predicted = arrow.decrease(values - search.values)
         if predicted <= self._least_decrease(search):
@@ -592,14 +591,14 @@ class ArrowFit(Generic[StateType]):
         beyond: StateType,
         blocks: npt.NDArray[np.bool_],
     ) -> FitOutcome | bool | None:
-        """Try a step along kinks, of which a state is known on the other side; as :meth:`_try_step`.
+        """Try a step along kinks, beyond which a state is known; results as for :meth:`_try_step`.
 
         Args:
             search: the search, on this side.
             arrow: the linear problem on this side.
             there: unknowns on the other side, shape (N,).
             beyond: the state on the other side.
-            blocks: which blocks have a kink in between, shape (blocks,).
+            blocks: mask of the blocks with a kink in between, shape (blocks,).
         """
         search.beyond = beyond
         other = self.linear(*self._parted(there), beyond)
@@ -629,16 +628,16 @@ class ArrowFit(Generic[StateType]):
         return None
 
     def _stepped(self, search: _Search[StateType], arrow: ArrowStep, damping: float) -> FloatArray:
-        """The unknowns after the step with the least damped sum, shape (N,)."""
+        """Compute the unknowns after the step with the least damped sum, shape (N,)."""
         box = self._limits.within_step(search.values)
         return BoundedStep(arrow, search.values, box, np.sqrt(damping) * search.scales).run()
 
     def _least_decrease(self, search: _Search[StateType]) -> float:
-        """Predicted decrease below which there is nothing left to gain."""
+        """Predicted decrease below which the search has converged."""
         return max(DECREASE, RELATIVE_DECREASE * search.cost)
 
     def _more_damping(self, search: _Search[StateType], arrow: ArrowStep) -> FitOutcome | bool:
-        """Let the next step be shorter; an outcome where it would be too short to change anything."""
+        """Increase the damping of the next step; return an outcome if the step would be too short to matter."""
         search.damping *= search.growth
         search.growth *= 2
         if search.damping > LARGEST_DAMPING:
@@ -646,7 +645,7 @@ class ArrowFit(Generic[StateType]):
         return False
 
     def _ended(self, search: _Search[StateType], arrow: ArrowStep) -> FitOutcome:
-        """How a search ends whose steps bring nothing: by what a step within the bounds would bring."""
+        """Outcome of a search whose steps fail, by the predicted decrease of a step within the bounds."""
         values = self._stepped(search, arrow, HARDLY_DAMPED)
         left = arrow.decrease(values - search.values)
         bound = max(ROUNDING, self._least_decrease(search))
@@ -654,7 +653,7 @@ class ArrowFit(Generic[StateType]):
 
 
 def kink_row(here: FloatArray, there: FloatArray, change: FloatArray, scales: FloatArray) -> FloatArray:
-    """The row of a linear model that is zero on the kink between two states, shape (1, 1 + n).
+    """Make the row of a linear model that is zero on the kink between two states, shape (1, 1 + n).
 
     Args:
         here: residual and derivatives at one state, shape (m, 1 + n).

@@ -25,10 +25,10 @@ SparseFactors: TypeAlias = tuple[ca.DM, ca.DM, ca.DM, list[int], list[int]]
 """Sparse QR factors of CasADi."""
 
 THIN = 1e-13
-"""Share of the largest diagonal entry of the triangular factor below which a sparse Jacobian counts as singular."""
+"""Ratio of diagonal entries of the triangular factor below which a sparse Jacobian counts as singular."""
 
 SINGULAR = 1e-11
-"""Reciprocal of the condition beyond which a Jacobian counts as singular."""
+"""Reciprocal condition number below which a Jacobian counts as singular."""
 
 
 @dataclass
@@ -36,8 +36,8 @@ class UpdatedJacobian:
     """The Jacobian B of an earlier iterate and the full steps taken since then.
 
     Attributes:
-        jacobian: Jacobian where the first step began.
-        steps: the steps s₀, s₁, … since, each the full one that :meth:`step` gave, shape (n,).
+        jacobian: Jacobian at the start of the first step.
+        steps: full steps s₀, s₁, … of :meth:`step` since then, shape (n,) each.
     """
 
     jacobian: Jacobian
@@ -52,13 +52,13 @@ class UpdatedJacobian:
         return bool(np.all(np.isfinite(entries)))
 
     def step(self, residual: FloatArray) -> FloatArray | None:
-        """The quasi-Newton step −B⁻¹ g with all updates.
+        """Compute the quasi-Newton step −B⁻¹ g with all updates.
 
         Args:
-            residual: g at the iterate that the last step led to, shape (n,).
+            residual: residual g at the iterate after the last step, shape (n,).
 
         Returns:
-            the step, shape (n,); None where it is not finite.
+            the step, shape (n,); None if it is not finite.
         """
         step = self._apply_inverse(residual, self.steps)
         if step is None or not self.steps:
@@ -70,16 +70,16 @@ class UpdatedJacobian:
         return _finite_or_none(step)
 
     def response(self, rate: FloatArray, residual: FloatArray) -> FloatArray | None:
-        """Change of the unknowns −B⁻¹ v with all updates, for any right side v.
+        """Compute the change of the unknowns −B⁻¹ v with all updates, for any right-hand side v.
 
-        The update that belongs to the last step takes the step that would follow it.
+        The update of the last step is formed with the step that would follow it.
 
         Args:
-            rate: v, shape (n,).
+            rate: right-hand side v, shape (n,).
             residual: residual at the iterate, shape (n,).
 
         Returns:
-            the change, shape (n,); None where it is not finite.
+            the change, shape (n,); None if it is not finite.
         """
         steps = self.steps
         following_step = self.step(residual) if steps else None
@@ -89,7 +89,7 @@ class UpdatedJacobian:
         return _finite_or_none(change)
 
     def _apply_inverse(self, vector: FloatArray, steps: Sequence[FloatArray]) -> FloatArray | None:
-        """Apply −B⁻¹ and then one update for each pair of neighbouring steps; None where B gives no solution."""
+        """Apply −B⁻¹ and then one update for each pair of consecutive steps; None if B gives no solution."""
         solution = newton_step(self.jacobian, vector, self._factors)
         if solution is None:
             return None
@@ -105,17 +105,17 @@ class UpdatedJacobian:
 
 
 def newton_step(jacobian: Jacobian, residual: FloatArray, factors: SparseFactors | None = None) -> FloatArray | None:
-    """Solve for the Newton step; the shortest one where the Jacobian is singular to rounding.
+    """Solve for the Newton step, or for the shortest one if the Jacobian is singular up to rounding.
 
-    A rod that symmetry lets turn without energy has a singular Jacobian: along that direction nothing moves.
+    A rod that may rotate without energy by symmetry has a singular Jacobian; nothing moves along that direction.
 
     Args:
         jacobian: n×n, dense or sparse.
         residual: shape (n,).
-        factors: the factorisation of a sparse Jacobian, by :func:`sparse_factors`, where it serves several steps.
+        factors: factorisation of a sparse Jacobian by :func:`sparse_factors`, if it serves several steps.
 
     Returns:
-        the step, shape (n,); None where it is not finite.
+        the step, shape (n,); None if it is not finite.
     """
     if not len(residual):
         return np.zeros(0)
@@ -132,7 +132,7 @@ def newton_step(jacobian: Jacobian, residual: FloatArray, factors: SparseFactors
 
 
 def solved(matrix: FloatArray, right: FloatArray) -> FloatArray | None:
-    """Solution of a dense linear system, shape as the right-hand sides; None where it has no finite one."""
+    """Solve a dense linear system; the solution has the shape of the right-hand sides; None if it is not finite."""
     try:
         solution = np.linalg.solve(matrix, right)
     except np.linalg.LinAlgError:
@@ -141,15 +141,15 @@ def solved(matrix: FloatArray, right: FloatArray) -> FloatArray | None:
 
 
 def shortest_step(jacobian: FloatArray, residual: FloatArray, singular: float = SINGULAR) -> FloatArray | None:
-    """The least-squares step of least norm: along a neutral direction nothing moves.
+    """Compute the least-squares step of least norm, which does not move along neutral directions.
 
     Args:
         jacobian: shape (n, m).
         residual: shape (n,).
-        singular: share of the largest singular value below which one is zero.
+        singular: share of the largest singular value below which one counts as zero.
 
     Returns:
-        shape (m,); None where a number is not finite.
+        the step, shape (m,); None if a number is not finite.
     """
     if not np.all(np.isfinite(jacobian)):
         return None
@@ -165,9 +165,9 @@ def dense(jacobian: Jacobian) -> FloatArray:
 
 
 def _regular_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray | None:
-    """Solve with a Jacobian that is not singular to rounding; None where it is.
+    """Solve with a regular Jacobian; None if it is singular up to rounding.
 
-    The same factors solve for a probe: it meets every direction, so a small singular value lengthens its solution.
+    The factors also solve for a probe with components in all directions: small singular values lengthen its solution.
     """
     # cos k² has no regularity, so that no singular vector of a regular structure is orthogonal to it.
     numbers = np.arange(1.0, len(residual) + 1.0)
@@ -189,7 +189,7 @@ def _regular_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray | No
 
 
 def sparse_factors(jacobian: ca.DM) -> SparseFactors | None:
-    """The sparse QR factors of a Jacobian; None where they cannot tell it from a singular one."""
+    """Compute sparse QR factors of a Jacobian; None if it may be singular by them."""
     if not np.all(np.isfinite(jacobian.nonzeros())):
         return None
     factors: SparseFactors = ca.qr_sparse(jacobian)
@@ -201,7 +201,7 @@ def sparse_factors(jacobian: ca.DM) -> SparseFactors | None:
 
 
 def _sparse_step(factors: SparseFactors | None, residual: FloatArray) -> FloatArray | None:
-    """The Newton step by sparse factors; None where there are none."""
+    """Compute the Newton step by sparse factors; None without them."""
     if factors is None or not np.all(np.isfinite(residual)):
         return None
     solution = ca.qr_solve(ca.DM(-residual), *factors)

@@ -1,8 +1,8 @@
 """Collocation methods as tables: Radau IIA and Gauss with one, two or three stages.
 
 A step of size h collocates at the times c_i h. Its Butcher matrix integrates the Lagrange polynomials of these nodes,
-A_ij = ∫₀^{c_i} ℓ_j, b_j = ∫₀¹ ℓ_j; for equations of second order A enters squared. The eigenvalues of A take the
-linear system of all stages apart into systems of the size of one. E. Hairer, G. Wanner, *Solving Ordinary Differential
+A_ij = ∫₀^{c_i} ℓ_j, b_j = ∫₀¹ ℓ_j; for equations of second order A enters squared. The eigenvalues of A decouple the
+linear system of all stages into systems of one stage each. E. Hairer, G. Wanner, *Solving Ordinary Differential
 Equations II*, 2nd ed., Springer 1996, sections IV.5 and IV.8.
 """
 
@@ -18,10 +18,10 @@ from numpy.polynomial import Legendre
 from cosserat_casadi.maths.typing import FloatArray
 
 MOST_STAGES = 3
-"""Most stages that the tables are made, and tested, for."""
+"""Largest number of stages for which tables are made and tested."""
 
 STAGES = 3
-"""Stages of simulated motions, and of motions of an optimal-control problem: order 5 of Radau IIA, 6 of Gauss."""
+"""Number of stages in simulations and optimal control: order 5 with Radau IIA, 6 with Gauss."""
 
 
 @dataclass(frozen=True)
@@ -30,17 +30,17 @@ class Collocation:
 
     Attributes:
         name: family and number of stages.
-        nodes: c, shape (s,).
-        matrix: A, shape (s, s).
+        nodes: nodes c, shape (s,).
+        matrix: Butcher matrix A, shape (s, s).
         matrix_squared: A², shape (s, s).
-        weights: b, shape (s,).
+        weights: weights b, shape (s,).
         position_weights: bᵀA, shape (s,).
-        order: order of a step for smooth equations that are not stiff.
+        order: order of a step for smooth nonstiff equations.
         stiffly_accurate: whether the last stage is the end of the step.
         polynomials: coefficients of the Lagrange polynomials, ℓ_j(θ) = Σ_k θ^k polynomials[k, j], shape (s, s).
         eigenvalues: eigenvalues of A, real ones first; of a conjugate pair the one above the real axis; shape (k,).
-        to_eigenvectors: (k, s): maps values at stages to coordinates along these eigenvectors.
-        from_eigenvectors: (s, k): its real part maps back; it counts a conjugate pair twice.
+        to_eigenvectors: map of values at stages to coordinates along these eigenvectors, shape (k, s).
+        from_eigenvectors: the inverse map, by its real part, with doubled conjugate pairs, shape (s, k).
     """
 
     name: str
@@ -74,7 +74,7 @@ class Collocation:
         return np.asarray(np.einsum("...k,kj->...j", powers, self.polynomials))
 
     def double_integrals_at(self, share: float | FloatArray) -> FloatArray:
-        """Integrals of the integrals, ∫₀^θ ∫₀^σ ℓ_j, shape (s,), or at k shares, shape (k, s)."""
+        """Double integrals ∫₀^θ ∫₀^σ ℓ_j, shape (s,), or at k shares, shape (k, s)."""
         exponents = np.arange(2, self.stages + 2)
         powers = np.asarray(share)[..., None] ** exponents / (exponents * (exponents - 1))
         return np.asarray(np.einsum("...k,kj->...j", powers, self.polynomials))
@@ -82,7 +82,7 @@ class Collocation:
 
 @cache
 def radau(stages: int) -> Collocation:
-    """Radau IIA: order 2s − 1, L-stable, its last stage is the end of the step.
+    """Radau IIA: order 2s − 1, L-stable, with the last stage at the end of the step.
 
     Raises:
         ValueError: there is no such table.
@@ -97,7 +97,7 @@ def radau(stages: int) -> Collocation:
 
 @cache
 def gauss(stages: int) -> Collocation:
-    """Gauss: order 2s, symmetric and symplectic; it does not damp, and suits no equations with constraints.
+    """Gauss: order 2s, symmetric and symplectic; it does not damp, and is unsuitable for constraints.
 
     Raises:
         ValueError: there is no such table.
@@ -113,7 +113,7 @@ def _check_stages(stages: int) -> None:
 
 
 def _collocation(name: str, nodes: FloatArray, order: int) -> Collocation:
-    """The table of the method with given nodes in (0, 1]."""
+    """Make the tables of the method with given nodes in (0, 1]."""
     stages = len(nodes)
     exponents = np.arange(1, stages + 1)
     powers = nodes[:, None] ** (exponents - 1)

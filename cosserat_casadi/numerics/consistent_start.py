@@ -1,10 +1,10 @@
-"""Accelerations and multipliers that belong to given positions and velocities.
+"""Accelerations and multipliers that are consistent with given positions and velocities.
 
 Rows of F that depend on neither v, a nor an algebraic entry are constraints g(t, x) = 0. Twice differentiated along
-the motion they are linear in a: G a + (what the motion with a = 0 makes of d²g/dt²) = 0. With the other rows, linear
-in a and in the algebraic entries, they are one linear system (E. Hairer, G. Wanner, *Solving Ordinary Differential
-Equations II*, 2nd ed., Springer 1996, section VII.1). Where a mass matrix is singular in elastic directions their
-balance says nothing of a: along them some small a is taken, and the residual of their balance is returned.
+the motion they are linear in a: G a + (d²g/dt² of the motion with a = 0) = 0. With the other rows, linear in a and in
+the algebraic entries, they are one linear system (E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*,
+2nd ed., Springer 1996, section VII.1). If the mass matrix is singular in elastic directions, their balance does not
+determine a: the least a along them is taken, and the residual of their balance is returned.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.motion_equations import Instant, Linearisation, MotionEquations
 
 DEGREE = 6
-"""Degree of the polynomial that the constraints along the motion are differentiated by."""
+"""Degree of the polynomial by which the constraints along the motion are differentiated."""
 
 NODES = np.cos(np.pi * np.arange(DEGREE, -1, -1) / DEGREE)
 """Nodes of that polynomial, from -1 to 1."""
@@ -29,25 +29,25 @@ NODES = np.cos(np.pi * np.arange(DEGREE, -1, -1) / DEGREE)
 _COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(NODES, DEGREE))
 
 DERIVATIVES = tuple(chebyshev.chebval(-1.0, chebyshev.chebder(_COEFFICIENTS, order)) for order in (1, 2))
-"""First and second derivative of that polynomial at the first node: weights of the values at the nodes."""
+"""Weights of the values at the nodes in the first and second derivative of that polynomial at the first node."""
 
 RANK = 1e-11
-"""Singular value, relative to the largest, below which a direction is one without mass."""
+"""Singular value, over the largest one, below which a direction counts as massless."""
 
 CORRECTIONS = 3
-"""Linear solves; the equations are linear, and those after the first take away rounding."""
+"""Number of linear solves; the equations are linear, and all solves after the first remove rounding."""
 
 
 @dataclass(frozen=True)
 class ConsistentStart:
-    """A start that satisfies the equations of motion as well as positions and velocities allow.
+    """A start that satisfies the equations of motion as far as positions and velocities allow.
 
     Attributes:
         instant: the start with its accelerations and algebraic entries.
-        position_error: largest constraint left at the positions, without unit; zero where they are consistent.
-        velocity_error: largest rate of a constraint, 1/s; zero where the velocities are consistent.
-        balance_error: largest entry of the other rows; zero but for directions without mass that are out of balance.
-        massless: number of directions whose acceleration the equations leave open.
+        position_error: largest dimensionless constraint residual at the positions; zero if they are consistent.
+        velocity_error: largest rate of a constraint, 1/s; zero if the velocities are consistent.
+        balance_error: largest entry of the other rows; zero except for massless directions that are out of balance.
+        massless: number of directions whose acceleration the equations do not determine.
     """
 
     instant: Instant
@@ -59,13 +59,13 @@ class ConsistentStart:
 
 @dataclass(frozen=True)
 class Saddle:
-    """The linear system of accelerations and algebraic entries; it depends on the positions alone.
+    """The linear system of accelerations and algebraic entries, which depends on the positions alone.
 
     Attributes:
-        constraints: rows in which nothing but positions stands, shape (n,).
-        matrix: derivatives of the rows with accelerations and algebraic entries, constraints twice differentiated,
+        constraints: mask of the rows that depend on positions alone, shape (n,).
+        matrix: derivatives of the rows by accelerations and algebraic entries, with constraints twice differentiated,
             shape (n, n).
-        differential: which entries have accelerations, shape (n,).
+        differential: mask of the entries with accelerations, shape (n,).
     """
 
     constraints: npt.NDArray[np.bool_]
@@ -74,15 +74,15 @@ class Saddle:
 
     @cached_property
     def inverse(self) -> tuple[FloatArray, int]:
-        """Pseudo-inverse of the matrix, and the number of directions that it leaves out."""
+        """Pseudo-inverse of the matrix, and dimension of its null space."""
         return _pseudo_inverse(self.matrix)
 
     def with_constraints(self, gradients: FloatArray, pushes: FloatArray) -> Saddle:
-        """The system with further constraints of these gradients, shape (m, n), and their multipliers, as last rows.
+        """Append further constraints and their multipliers to the system.
 
         Args:
-            gradients: of the constraints, shape (m, n).
-            pushes: what unit multipliers do to the rows, shape (m, n).
+            gradients: gradients of the constraints, shape (m, n).
+            pushes: effects of unit multipliers on the rows, shape (m, n).
         """
         count = len(gradients)
         added = np.block([[self.matrix, -pushes.T], [gradients, np.zeros((count, count))]])
@@ -94,7 +94,7 @@ class Saddle:
 
 
 def saddle_of(linearisation: Linearisation, differential: npt.NDArray[np.bool_]) -> Saddle:
-    """The system of equations that are linearised, some of whose entries have accelerations, shape (n,)."""
+    """Make the system of linearised equations, with a mask of the entries that have accelerations, shape (n,)."""
     constraints = _constraint_rows(linearisation, differential)
     matrix = np.where(differential, linearisation.mass, linearisation.stiffness)
     matrix[constraints] = np.where(differential, linearisation.stiffness[constraints], 0.0)
@@ -102,7 +102,7 @@ def saddle_of(linearisation: Linearisation, differential: npt.NDArray[np.bool_])
 
 
 def saddle_at(equations: MotionEquations, instant: Instant) -> Saddle:
-    """The system of some equations at an instant."""
+    """Make the system of equations at an instant."""
     return saddle_of(equations.linearised(instant), equations.differential)
 
 
@@ -116,16 +116,16 @@ def consistent_start(
 ) -> ConsistentStart:
     """Solve for accelerations and algebraic entries at given positions and velocities.
 
-    Nothing is repaired: errors of the positions and velocities are told, and the caller judges them.
+    Nothing is repaired: errors of the positions and velocities are returned, and the caller judges them.
 
     Args:
         equations: the equations of motion.
-        time: s.
+        time: time of the start, s.
         x: positions, and a guess of the algebraic entries, shape (n,).
         v: velocities, shape (n,), 1/s.
         interval: time after the start in which the equations are smooth and the motion bends little, s; constraints
             are differentiated in it.
-        saddle: the linear system there, where it is known.
+        saddle: the linear system there, if it is known.
     """
     differential = equations.differential
     instant = Instant(time, x, np.where(differential, v, 0.0), np.zeros(equations.size))
@@ -160,17 +160,17 @@ def following(
     interval: float,
     follows: npt.NDArray[np.bool_],
 ) -> FloatArray:
-    """Velocities in which some entries go along with the others as constraints demand, no further, shape (n,).
+    """Velocities in which some entries follow the others, as little as constraints demand, shape (n,).
 
-    Where the others leave no such velocities, constraints keep a rate: :func:`consistent_start` tells it.
+    If the others allow no such velocities, constraints keep a rate, which :func:`consistent_start` returns.
 
     Args:
         equations: the equations of motion.
-        time: s.
+        time: time of the start, s.
         x: positions, shape (n,).
         v: velocities, shape (n,), 1/s.
-        interval: as for :func:`consistent_start`, s.
-        follows: which entries go along, shape (n,).
+        interval: time of smooth equations, as for :func:`consistent_start`, s.
+        follows: mask of the entries that follow, shape (n,).
     """
     instant = Instant(time, x, v, np.zeros(equations.size))
     linearisation = equations.linearised(instant)
@@ -183,11 +183,11 @@ def following(
 
 
 def response(saddle: Saddle, directions: FloatArray) -> FloatArray:
-    """Accelerations that unit forces make, or velocities that unit impulses make, all constraints kept, shape (n, k).
+    """Accelerations by unit forces, or velocities by unit impulses, that keep all constraints, shape (n, k).
 
     Args:
         saddle: the linear system.
-        directions: forces on the unknowns, one a column, shape (n, k).
+        directions: forces on the unknowns as columns, shape (n, k).
     """
     inverse, _ = saddle.inverse
     forced = np.where(saddle.constraints[:, None], 0.0, directions)
@@ -195,15 +195,15 @@ def response(saddle: Saddle, directions: FloatArray) -> FloatArray:
 
 
 def least_change(saddle: Saddle, gradients: FloatArray, pushes: FloatArray, values: FloatArray) -> FloatArray:
-    """The change of unknowns, or of their rates, that takes values from some gaps, or from the rates of these.
+    """Least change of unknowns, or of their rates, that reduces some gaps, or their rates, by given values.
 
-    It is the smallest in the metric of the mass that keeps all constraints: of rates, one by impulses along the gaps.
+    It is the least one, in the metric of the mass, that keeps all constraints: for rates, by impulses along the gaps.
 
     Args:
         saddle: the linear system.
         gradients: gradients of the gaps, shape (m, n).
-        pushes: what unit forces along the gaps do to the rows, shape (m, n).
-        values: values to be taken from each gap, or rate, shape (m,).
+        pushes: effects of unit forces along the gaps on the rows, shape (m, n).
+        values: reduction of each gap, or rate, shape (m,).
 
     Returns:
         the change, shape (n,).
@@ -216,18 +216,18 @@ def least_change(saddle: Saddle, gradients: FloatArray, pushes: FloatArray, valu
 def shortly_after(
     equations: MotionEquations, instant: Instant, horizon: float, directions: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Mean accelerations over a short time, and answers to unit forces: a linear step of Euler's implicit method.
+    """Mean accelerations over a short time, and responses to unit forces, by a linear step of Euler's implicit method.
 
-    Damping and stiffness of stiff parts answer within that time: accelerations at its beginning do not show it.
+    Damping and stiffness of stiff parts act within that time, which accelerations at its beginning do not show.
 
     Args:
         equations: the equations of motion.
-        instant: with consistent accelerations.
+        instant: instant with consistent accelerations.
         horizon: the time h, s.
-        directions: forces on the unknowns, one a column, shape (n, k).
+        directions: forces on the unknowns as columns, shape (n, k).
 
     Returns:
-        accelerations, shape (n,), 1/s², and answers, shape (n, k).
+        accelerations, shape (n,), 1/s², and responses, shape (n, k).
     """
     differential = equations.differential
     linearisation = equations.linearised(instant)
@@ -246,21 +246,21 @@ def shortly_after(
 def impact(
     equations: MotionEquations, time: float, x: FloatArray, v: FloatArray, interval: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Velocities that satisfy the constraints, after impulses along them: nothing bounces.
+    """Velocities after a plastic impact, by impulses along the constraints, which they then satisfy.
 
     M Δv + (∂F/∂λ) Λ = 0 with the rates of all constraints zero after it: the projection of the velocities in the
     metric of the mass (F. Pfeiffer, C. Glocker, *Multibody Dynamics with Unilateral Contacts*, Wiley 1996, section 6).
     Whether impulses of constraints that only push, or only pull, have the right sign is for the caller to judge.
 
     Args:
-        equations: with the constraints that hold after the blow.
-        time: s.
+        equations: equations of motion with the constraints after the impact.
+        time: time of the impact, s.
         x: positions, on the constraints, shape (n,).
-        v: velocities before it, shape (n,), 1/s.
-        interval: time after it in which the equations are smooth, s.
+        v: velocities before the impact, shape (n,), 1/s.
+        interval: time after the impact in which the equations are smooth, s.
 
     Returns:
-        velocities after it, shape (n,), 1/s; and impulses, the integrals over the blow of the algebraic entries, zero
+        velocities after the impact, shape (n,), 1/s; and impulses, the integrals of the algebraic entries over it, zero
         for differential entries, shape (n,), s.
     """
     differential = equations.differential
@@ -278,7 +278,7 @@ def impact(
 
 
 def _constraint_rows(linearisation: Linearisation, differential: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    """Rows in which nothing but positions stands, shape (n,)."""
+    """Mask of the rows that depend on positions alone, shape (n,)."""
     no_mass = ~np.any(linearisation.mass, axis=1)
     no_damping = ~np.any(linearisation.damping, axis=1)
     no_multiplier = ~np.any(linearisation.stiffness[:, ~differential], axis=1)
@@ -288,11 +288,11 @@ def _constraint_rows(linearisation: Linearisation, differential: npt.NDArray[np.
 def _in_time(
     equations: MotionEquations, instant: Instant, constraints: npt.NDArray[np.bool_], interval: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Constraints g along the motion x + τ v, ġ in 1/s, and g̈ without the part of a in 1/s², at τ = 0, shape (m,) each.
+    """Constraints g along x + τ v, ġ in 1/s, and g̈ at zero acceleration in 1/s², at τ = 0, shape (m,) each.
 
     They are differentiated by a polynomial through values after the start.
 
-    Values before the start may belong to a piece in which the inputs moved otherwise.
+    Values before the start may belong to another piece of the inputs, and are not used.
     """
     exact = np.zeros(0), np.zeros(0)
     if equations.rates_of_last is not None:
@@ -314,7 +314,7 @@ def _in_time(
 
 
 def _pseudo_inverse(matrix: FloatArray) -> tuple[FloatArray, int]:
-    """Pseudo-inverse with rows and columns scaled, and the number of directions it leaves out."""
+    """Pseudo-inverse with scaled rows and columns, and dimension of the null space."""
     rows = _scale(np.abs(matrix).max(axis=1))
     columns = _scale((np.abs(matrix) / rows[:, None]).max(axis=0))
     scaled = matrix / rows[:, None] / columns
@@ -329,15 +329,15 @@ def _pseudo_inverse(matrix: FloatArray) -> tuple[FloatArray, int]:
 
 
 def _scale(sizes: FloatArray) -> FloatArray:
-    """Sizes to divide by; nothing is divided where all is zero."""
+    """Sizes by which to divide, with one in place of zero."""
     return np.where(sizes > 0.0, sizes, 1.0)
 
 
 def regular_inverse(matrix: FloatArray, rank: float) -> FloatArray | None:
     """Inverses of matrices whose singular values are all above a share of the largest; None where some may not be.
 
-    It takes a tenth of the time of the singular values. The condition in the norm of sums of columns, times the number
-    of columns, bounds the ratio of the singular values.
+    The check takes a tenth of the time of singular values: the condition number in the 1-norm, times the number of
+    columns, bounds the ratio of the singular values.
 
     Args:
         matrix: square, or several, shape (…, n, n).

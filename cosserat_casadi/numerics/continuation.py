@@ -1,12 +1,12 @@
 """Load continuation: from a known equilibrium to the wanted one along a path in the loads.
 
 Natural continuation in t ∈ [0, 1] (E. L. Allgower, K. Georg, *Introduction to Numerical Continuation Methods*, SIAM
-2003, chapters 2 and 6). The cubic through the last two points and their tangents predicts, Newton corrects: inexactly
-on the way, to the full tolerance at the end. A step is taken back and halved unless Newton needs few Jacobians, no
-damping, and little correction: far from the path it meets some equilibrium, not the one that the growing load leads
-to. The last Jacobian of a correction serves for the tangent. See docs/theory.md, section 9.
+2003, chapters 2 and 6). The cubic through the last two points and their tangents predicts, Newton's method corrects:
+inexactly on the way, to the full tolerance at the end. A step is retracted and halved unless Newton's method needs few
+Jacobians, no damping, and a small correction: far from the path it may find another equilibrium than the one to which
+the growing load leads. The last Jacobian of a correction gives the tangent. See docs/theory.md, section 9.
 
-The exported C follows paths in the same way; its corrections stop at the tolerance, those here at
+The exported C follows paths alike; its corrections stop at the tolerance, those here at
 :attr:`NewtonSettings.aim`.
 """
 
@@ -24,7 +24,7 @@ from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress
 
 MOST_BENT = 0.5
-"""Most that the cubic may differ from the tangent, relative to it."""
+"""Largest deviation of the cubic from the tangent, relative to the tangent."""
 
 CORRECTION_FLOOR = 0.3
 """Correction that is always plausible (2-norm; about a third of a radian of bending)."""
@@ -37,7 +37,7 @@ ENDS_MEET = 1e-12
 
 
 PathPoint = tuple[FloatArray, float]
-"""Unknowns x with the parameter t that they belong to."""
+"""Unknowns x with their parameter t."""
 
 
 @dataclass(frozen=True)
@@ -49,11 +49,11 @@ class Path:
         jacobian: (x, t) ↦ ∂g/∂x, n×n, dense or sparse.
         rate: (x, t) ↦ ∂g/∂t, shape (n,).
         start: unknowns at or near the equilibrium at t = 0, shape (n,).
-        tangent: dx/dt at the start where it is known beforehand, and with it that the start is in equilibrium.
-        step_weights: how much each unknown counts in the length of a step, shape (n,); None where all count alike.
+        tangent: dx/dt at the start if it is known, and with it that the start is an equilibrium; else None.
+        step_weights: weight of each unknown in the length of a step, shape (n,); None for equal weights.
         first_step: longest first step in t.
-        admits: ((x, t) before, (x, t) after) ↦ whether a step may lead from one to the other; None where any may. What
-            is refused is tried with half the step.
+        admits: ((x, t) before, (x, t) after) ↦ whether a step may lead from one to the other; None to admit all. A
+            refused step is halved.
     """
 
     residual: Callable[[FloatArray, float], FloatArray]
@@ -72,7 +72,7 @@ class Path:
         return length_of(self.step_weights * change)
 
     def admitted(self, before: PathPoint, after: PathPoint) -> bool:
-        """Whether a step, or a correction at one t, may lead from a point to another."""
+        """Whether a step, or a correction at one t, may lead from one point to another."""
         return self.admits is None or self.admits(before, after)
 
     def at(self, t: float) -> Equations:
@@ -89,12 +89,12 @@ class ContinuationSettings:
 
     Attributes:
         newton: limits of the correction at the end of the path.
-        inexact: error of x that the corrections before it may leave (2-norm).
-        longest: longest tangent of a step (2-norm; about one radian of bending a unit).
+        inexact: largest error of x of the corrections before the end (2-norm).
+        longest: longest tangent of a step (2-norm; one unit is about one radian of bending).
         shortest: smallest step in t before the path counts as stalled.
         steps: most steps, taken or refused.
-        grow_below: Jacobians of a correction up to which the next step grows.
-        reject_above: Jacobians of a correction beyond which its step is refused.
+        grow_below: most Jacobians of a correction after which the next step grows.
+        reject_above: most Jacobians of the correction of an accepted step.
     """
 
     newton: NewtonSettings = field(default_factory=NewtonSettings)
@@ -108,7 +108,7 @@ class ContinuationSettings:
     def correction(self, target: float) -> NewtonSettings:
         """Limits of the correction at a point of the path.
 
-        What would not be accepted is given up at once: Newton may neither shorten a step nor take more Jacobians.
+        A correction that would not be accepted is abandoned at once: it may neither damp nor take more Jacobians.
         """
         inexact = 0.0 if target == 1.0 else self.inexact
         return replace(self.newton, inexact=inexact, jacobians=self.reject_above, damping=False)
@@ -116,14 +116,14 @@ class ContinuationSettings:
 
 @dataclass(frozen=True)
 class ContinuationResult:
-    """Where a continuation ended.
+    """Result of a continuation.
 
     Attributes:
         x: unknowns at the end of the path, or the last good ones.
-        outcome: how it ended.
+        outcome: outcome of the continuation.
         residual_norm: relative norm of the residual at x and t.
-        iterations: Newton steps of all corrections, and predictions refused before one.
-        reached: t that was reached; 1 unless the path stalled.
+        iterations: number of Newton steps of all corrections, plus refused predictions.
+        reached: value of t that was reached; 1 unless the path stalled.
     """
 
     x: FloatArray
@@ -138,9 +138,9 @@ class _Point:
     """A point of a path.
 
     Attributes:
-        t: where on the path.
-        tangent: dx/dt, shape (n,).
-        correction: the Newton solve that led there.
+        t: parameter of the path.
+        tangent: tangent dx/dt, shape (n,).
+        correction: Newton solve that led there.
     """
 
     t: float
@@ -159,8 +159,8 @@ def follow(
     """Follow a path from t = 0 to t = 1.
 
     Args:
-        path: the equations and where they start.
-        settings: limits.
+        path: the equations and their start.
+        settings: limits of the continuation.
         progress: receives the t reached after every step.
     """
     limits = settings or ContinuationSettings()
@@ -225,7 +225,7 @@ def follow(
 
 
 def _first_point(path: Path, limits: ContinuationSettings) -> _Point:
-    """The equilibrium at t = 0 with its tangent; its outcome says whether there is one."""
+    """Solve for the equilibrium at t = 0 with its tangent; the outcome says whether it exists."""
     if path.tangent is None:
         correction = newton(path.at(0.0), path.start, limits.newton)
         point = _point(path, correction, 0.0)
@@ -249,7 +249,7 @@ def _first_point(path: Path, limits: ContinuationSettings) -> _Point:
 
 
 def _point(path: Path, correction: NewtonResult, t: float) -> _Point:
-    """A corrected point with its tangent dx/dt = −(∂g/∂x)⁻¹ ∂g/∂t, by the Jacobian that the correction has left."""
+    """Make a corrected point with its tangent dx/dt = −(∂g/∂x)⁻¹ ∂g/∂t, by the last Jacobian of the correction."""
     jacobian = correction.last_jacobian
     if jacobian is None:
         # The prediction was good enough already: nothing has been linearised.
@@ -264,12 +264,12 @@ def _point(path: Path, correction: NewtonResult, t: float) -> _Point:
 
 
 def _stays(path: Path, current: _Point, exact: NewtonResult) -> bool:
-    """Whether a point that is corrected exactly lies on the path where it did: near a fold Newton's method may stray.
+    """Whether a point stays on its path when it is corrected exactly; near a fold Newton's method may stray.
 
     Args:
         path: the equations.
         current: the point, corrected inexactly.
-        exact: Newton's method from there, at the same t.
+        exact: result of Newton's method from that point, at equal t.
     """
     if exact.outcome is not Outcome.CONVERGED or not _is_small(path, exact.x - current.x, np.zeros_like(exact.x)):
         return False
@@ -285,7 +285,7 @@ def _target(current: _Point, step: float) -> float:
 
 
 def _predicted_change(path: Path, current: _Point, previous: _Point | None, step: float) -> FloatArray:
-    """Change of x by the cubic through two points; by the tangent where there is one point, or the two differ much.
+    """Predict the change of x by the cubic through two points, or by the tangent if they differ much or for one point.
 
     With σ = (t − t₁)/h, h = t₁ − t₀ and Δ = x₁ − x₀ the Hermite cubic is x₁ + h x₁' σ + (c₃ + h x₁' − Δ) σ² + c₃ σ³,
     c₃ = h (x₁' + x₀') − 2 Δ.
@@ -306,9 +306,9 @@ def _predicted_change(path: Path, current: _Point, previous: _Point | None, step
 
 
 def _predictor_plausible(path: Path, current: _Point, predicted: FloatArray, target: float) -> bool:
-    """Whether the Jacobian at hand foresees a correction that would be accepted.
+    """Whether the available Jacobian predicts a correction that would be accepted.
 
-    This costs one residual; to let Newton fail costs a Jacobian and its factorisation.
+    This costs one residual; a failure of Newton's method costs a Jacobian and its factorisation.
     """
     jacobian = current.correction.last_jacobian
     if jacobian is None:
@@ -327,7 +327,7 @@ def _is_small(path: Path, correction: FloatArray, predicted: FloatArray) -> bool
 
 
 def _stalled(path: Path, last: _Point, limits: ContinuationSettings, iterations: int) -> ContinuationResult:
-    """The last point, which was corrected inexactly, as near to equilibrium as Newton brings it."""
+    """Result at the last point, which was corrected inexactly, after Newton's method at that point."""
     end = newton(path.at(last.t), last.x, limits.newton)
     if not _stays(path, last, end):
         # What Newton's method leads to is not the end of this path.
@@ -336,5 +336,5 @@ def _stalled(path: Path, last: _Point, limits: ContinuationSettings, iterations:
 
 
 def _ended(last: NewtonResult, iterations: int, reached: float) -> ContinuationResult:
-    """The end of a continuation at its last correction."""
+    """Result of a continuation at its last correction."""
     return ContinuationResult(last.x, last.outcome, last.residual_norm, iterations, reached)

@@ -1,10 +1,10 @@
-"""Newton's method for the stages of one step with a Jacobian at each stage, damped: for steps that move far.
+"""Damped Newton's method for the stages of one step with a Jacobian at each stage, for steps that move far.
 
-One Jacobian for all stages, as :mod:`stage_newton` has it, serves where a step moves little. A step of a given size may
-turn a rod by a large angle between its stages: no single Jacobian is near all stages, and a whole correction leads
-astray. Here the stages keep their own Jacobians, whose systems are coupled by the tables of the method, and corrections
-are shortened until the next one would be shorter: P. Deuflhard, *Newton Methods for Nonlinear Problems*, Springer 2004,
-section 3.3 (natural monotonicity).
+One Jacobian for all stages, as in :mod:`stage_newton`, suffices if a step moves little. A step of a given size may turn
+a rod by a large angle between its stages: no single Jacobian is near all stages, and a full correction diverges. Here
+each stage has its own Jacobian; the systems are coupled by the tables of the method, and corrections are shortened
+until the next one would be shorter: P. Deuflhard, *Newton Methods for Nonlinear Problems*, Springer 2004, section 3.3
+(natural monotonicity).
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ LEAST_SHARE = 2.0**-5
 """Smallest share of a correction that is taken."""
 
 DECREASE = 0.25
-"""Decrease of the corrections that a share λ of one has to bring, over λ."""
+"""Least decrease of the corrections by a share λ of one, over λ."""
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,8 @@ class CoupledStages:
     Attributes:
         equations: the equations of motion.
         method: the collocation method.
-        start: where the step begins.
-        size: h, s.
+        start: state at the start of the step.
+        size: step size h, s.
     """
 
     equations: MotionEquations
@@ -47,7 +47,7 @@ class CoupledStages:
     size: float
 
     def residuals(self, unknowns: FloatArray) -> FloatArray:
-        """F at the stages for their unknowns, as in :class:`Step`; both of shape (s, n)."""
+        """F at the stages for their unknowns; both of shape (s, n)."""
         stages = StepPolynomial(self.method, self.equations.differential, self.start, self.size, unknowns).stages
         return self.equations.residual_of_stages(stages.times, stages.x, stages.v, stages.a)
 
@@ -55,10 +55,10 @@ class CoupledStages:
         """Derivatives of all residuals by h² a of differential entries and by the values of algebraic ones.
 
         Args:
-            unknowns: of the stages, shape (s, n).
+            unknowns: unknowns of the stages, shape (s, n).
 
         Returns:
-            shape (s n, s n).
+            the Jacobian, shape (s n, s n).
         """
         differential = self.equations.differential
         stages = StepPolynomial(self.method, differential, self.start, self.size, unknowns).stages
@@ -83,11 +83,10 @@ class Taken:
     """A share of a correction that brings a decrease.
 
     Attributes:
-        share: of the whole correction.
-        unknowns: where it leads, shape (s, n).
+        share: share of the whole correction.
+        unknowns: unknowns after it, shape (s, n).
         residuals: F there, shape (s, n).
-        following: weighted length of the correction that would follow with the same Jacobian: after a whole one, what
-            is left.
+        following: weighted length of the next correction with this Jacobian; after a whole one, the remaining error.
     """
 
     share: float
@@ -100,9 +99,9 @@ def solve_coupled_stages(stages: CoupledStages, guess: FloatArray, bounds: Newto
     """Solve for the stages of a step.
 
     Args:
-        stages: their equations.
+        stages: equations of the stages.
         guess: first iterate of the unknowns, shape (s, n).
-        bounds: weights and the error that may be left; the number of corrections is a constant of this module.
+        bounds: weights and largest error; the number of corrections is a constant of this module.
     """
     allowed = max(bounds.error, ROUNDING * bounds.length(stages.start.x))
     unknowns = guess
@@ -131,7 +130,7 @@ def solve_coupled_stages(stages: CoupledStages, guess: FloatArray, bounds: Newto
 def _shortened(
     stages: CoupledStages, unknowns: FloatArray, corrections: FloatArray, inverse: FloatArray, bounds: NewtonBounds
 ) -> Taken | None:
-    """The largest share of a correction, halved from the whole on, after which the next one is shorter; None without.
+    """Largest share of a correction, by halving, after which the next one is shorter; None if there is none.
 
     Args:
         stages: the equations.
@@ -156,5 +155,5 @@ def _shortened(
 
 
 def _corrections(inverse: FloatArray, residuals: FloatArray) -> FloatArray:
-    """Corrections of all stages, shape (s, n)."""
+    """Compute the corrections of all stages, shape (s, n)."""
     return np.asarray(-(inverse @ residuals.ravel()).reshape(residuals.shape))

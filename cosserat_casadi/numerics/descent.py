@@ -1,10 +1,10 @@
-"""Descent of an energy to a minimum by its gradient and its Hessian: off saddles, along negative curvature.
+"""Descent of an energy to a minimum by gradient and Hessian, which leaves saddles along negative curvature.
 
-A trust region: the step minimises the quadratic model of the energy in a ball; at a saddle it leaves along the
-eigenvector of the lowest eigenvalue. Where symmetry leaves no slope there, the way out is chosen, and by the largest
-coordinate rather than by rounding (neutral.py): the same on every discretisation. The energy need not be written:
-its change over a step is the work of the gradient along it. J. Nocedal, S. J. Wright, *Numerical Optimization*, 2nd
-ed., Springer 2006, sections 4.1 and 4.3.
+Each step of this trust-region method minimises the quadratic model of the energy in a ball; a saddle is left along the
+eigenvector of the lowest eigenvalue. If symmetry leaves no slope there, the largest coordinate, and not rounding,
+selects the direction (neutral.py), equally on every discretisation. The energy itself is not needed: its change over a
+step is the work of the gradient along it. J. Nocedal, S. J. Wright, *Numerical Optimization*, 2nd ed., Springer 2006,
+sections 4.1 and 4.3.
 See docs/theory.md, section 9.
 """
 
@@ -23,33 +23,33 @@ from cosserat_casadi.numerics.newton import length_of, relative_norm
 _GAUSS_NODES, _GAUSS_WEIGHTS = gauss_legendre(4)
 
 WORK_NODES = (_GAUSS_NODES + 1) / 2
-"""Quadrature nodes of the work along a step, shares of it."""
+"""Quadrature nodes of the work along a step, as shares of it."""
 
 WORK_WEIGHTS = _GAUSS_WEIGHTS / 2
-"""Weights of the quadrature of the work, which add up to one."""
+"""Quadrature weights of the work, which sum to one."""
 
 ACCEPT_ABOVE = 0.1
-"""Share of the foreseen decrease from which on a step is taken."""
+"""Least share of the predicted decrease for a step to be taken."""
 
 SHRINK_BELOW = 0.25
-"""Share of the foreseen decrease below which the trust region shrinks."""
+"""Share of the predicted decrease below which the trust region shrinks."""
 
 GROW_ABOVE = 0.75
-"""Share of the foreseen decrease above which the trust region may grow."""
+"""Share of the predicted decrease above which the trust region may grow."""
 
 AT_BOUNDARY = 0.9
-"""Share of the radius beyond which a step counts as held back by the trust region."""
+"""Share of the radius above which a step counts as limited by the trust region."""
 
 RADIUS_TOLERANCE = 1e-6
-"""Relative accuracy of the multiplier that puts a step on the boundary of the ball."""
+"""Relative accuracy of the multiplier with which a step reaches the boundary of the ball."""
 
 BISECTIONS = 100
-"""Most halvings in the search for that multiplier."""
+"""Most bisections in the search for that multiplier."""
 
 
 @dataclass(frozen=True)
 class Energy:
-    """An energy of n variables by its derivatives.
+    """An energy of n variables, given by its derivatives.
 
     Attributes:
         gradient: x ↦ shape (n,).
@@ -60,7 +60,7 @@ class Energy:
     hessian: Callable[[FloatArray], FloatArray]
 
     def change(self, x: FloatArray, step: FloatArray) -> float:
-        """Energy at x + step less that at x."""
+        """Energy at x + step minus energy at x."""
         rates = [self.gradient(x + share * step) @ step for share in WORK_NODES]
         return float(WORK_WEIGHTS @ rates)
 
@@ -71,8 +71,8 @@ class DescentSettings:
 
     Attributes:
         tolerance: bound on the relative norm of the gradient.
-        flat: an eigenvalue above minus this share of the largest counts as not negative.
-        longest: longest step (2-norm; about one radian of bending a unit).
+        flat: share of the largest eigenvalue below which a negative one counts as zero.
+        longest: longest step (2-norm; one unit is about one radian of bending).
         shortest: radius below which the descent gives up.
         steps: most steps, taken or refused.
     """
@@ -86,12 +86,12 @@ class DescentSettings:
 
 @dataclass(frozen=True)
 class _QuadraticModel:
-    """An energy about a point, in the axes of its Hessian.
+    """Quadratic model of an energy about a point, in the axes of its Hessian.
 
     Attributes:
-        gradient: shape (n,).
+        gradient: gradient of the energy, shape (n,).
         curvatures: eigenvalues of the Hessian, ascending, shape (n,).
-        axes: its eigenvectors, n×n, one a column.
+        axes: eigenvectors of the Hessian as columns, n×n.
     """
 
     gradient: FloatArray
@@ -99,7 +99,7 @@ class _QuadraticModel:
     axes: FloatArray
 
     def is_saddle(self, flat: float) -> bool:
-        """Whether a curvature is negative beyond a share of the largest, which is taken for one at least."""
+        """Whether a curvature is below minus ``flat`` times the largest, or times one if that is larger."""
         sizes = np.abs(self.curvatures)
         scale = max(1.0, float(sizes.max()))
         lowest = float(self.curvatures[0])
@@ -112,7 +112,7 @@ class _QuadraticModel:
         return np.asarray(self.axes @ minimum)
 
     def change(self, step: FloatArray) -> float:
-        """Change of the energy that the model foresees over a step."""
+        """Change of the energy over a step in the model."""
         components = self.axes.T @ step
         linear = self.gradient @ step
         quadratic = components**2 @ self.curvatures / 2
@@ -120,16 +120,16 @@ class _QuadraticModel:
 
 
 def descend(energy: Energy, start: FloatArray, side: float, settings: DescentSettings) -> FloatArray | None:
-    """Find the minimum at the foot of a start.
+    """Find the minimum below a start point.
 
     Args:
-        energy: what to lower.
-        start: shape (n,).
+        energy: energy to minimise.
+        start: start point, shape (n,).
         side: +1 or −1, the side on which a saddle is left.
-        settings: limits.
+        settings: limits of the descent.
 
     Returns:
-        the minimum, shape (n,); None where a number is not finite or the steps run out.
+        the minimum, shape (n,); None if a number is not finite or the steps run out.
     """
     x = start
     radius = settings.longest / 4
@@ -163,12 +163,12 @@ def descend(energy: Energy, start: FloatArray, side: float, settings: DescentSet
 
 
 def _quadratic_model(energy: Energy, x: FloatArray, tolerance: float) -> _QuadraticModel | None:
-    """The quadratic model at a point; None where a number is not finite.
+    """Make the quadratic model at a point; None if a number is not finite.
 
     Args:
-        energy: the energy to lower.
+        energy: energy to minimise.
         x: the point, shape (n,).
-        tolerance: bound on the relative norm of a slope that counts as none.
+        tolerance: bound on the relative norm of a slope that counts as zero.
     """
     gradient = energy.gradient(x)
     hessian = energy.hessian(x)
@@ -183,11 +183,11 @@ def _quadratic_model(energy: Energy, x: FloatArray, tolerance: float) -> _Quadra
 def _with_way_out(
     gradient: FloatArray, curvatures: FloatArray, axes: FloatArray, x: FloatArray, tolerance: float
 ) -> _QuadraticModel:
-    """The quadratic model where a curvature is negative: its first axis does not hang on rounding.
+    """Make the quadratic model with a negative curvature, whose first axis does not depend on rounding.
 
-    A round rod buckles to any side: the axes of equal lowest curvatures are any basis of their space. The first becomes
-    the direction that :func:`direction_in` chooses. A slope in that space that is none but for rounding is left out, or
-    it would choose the side.
+    A round rod buckles to any side: the axes of equal lowest curvatures are any basis of their space. The first axis
+    becomes the direction that :func:`direction_in` chooses. A slope in that space that is rounding is set to zero, so
+    that it does not choose the side.
     """
     lowest = curvatures[0]
     alike = curvatures <= lowest + TIE * abs(lowest)
@@ -208,17 +208,17 @@ def _with_way_out(
 def ball_minimum(curvatures: FloatArray, slopes: FloatArray, radius: float, side: float) -> FloatArray:
     """Minimum of Σ slope z + ½ curvature z² over the ball |z| ≤ radius.
 
-    It is z = −slope / (curvature + μ) with μ = 0 inside, else with the μ that puts z on the boundary and leaves no
-    curvature + μ negative: Nocedal and Wright, theorem 4.1.
+    It is z = −slope / (curvature + μ) with μ = 0 inside; else with the μ for which z is on the boundary and no
+    curvature + μ is negative: Nocedal and Wright, theorem 4.1.
 
     Args:
-        curvatures: ascending, shape (n,).
-        slopes: shape (n,).
-        radius: of the ball.
-        side: direction along the first axis where its slope is zero and its curvature negative.
+        curvatures: curvatures, ascending, shape (n,).
+        slopes: slopes, shape (n,).
+        radius: radius of the ball.
+        side: direction along the first axis if its slope is zero and its curvature negative.
 
     Returns:
-        z, shape (n,).
+        the minimum z, shape (n,).
     """
     lowest = float(curvatures[0])
     rounding = 1e-12 * max(1.0, float(np.abs(curvatures).max()))

@@ -1,9 +1,9 @@
-"""Limit points and bifurcations between two points of a curve: detected, told apart, located.
+"""Limit points and bifurcations between two points of a curve: detection, separation and location.
 
 A limit point is a zero of dλ/ds. At a bifurcation a number of the monitor changes sign: for loads with a potential an
-eigenvalue of the second variation, which sees multiple ones too; otherwise the smallest singular value of the bordered
-matrix with the sign of its determinant, which a limit point leaves alone. R. Seydel, *Practical Bifurcation and
-Stability Analysis*, 3rd ed., Springer 2010, chapters 4 and 5. See docs/theory.md, section 12.
+eigenvalue of the second variation, which also detects multiple ones; otherwise the smallest singular value of the
+bordered matrix with the sign of its determinant, which does not change at a limit point. R. Seydel, *Practical
+Bifurcation and Stability Analysis*, 3rd ed., Springer 2010, chapters 4 and 5. See docs/theory.md, section 12.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ LOCATED = 1e-14
 """Arclength to which an event is located."""
 
 SAME = 1e-8
-"""Arclength below which zeros are one event of a higher multiplicity."""
+"""Arclength below which zeros count as one event of higher multiplicity."""
 
 EVALUATIONS = 60
 """Most points computed for one event."""
@@ -33,8 +33,8 @@ class Event:
 
     Attributes:
         kind: "limit" or "bifurcation".
-        point: where it is.
-        multiplicity: numbers of the monitor that vanish there.
+        point: point of the curve.
+        multiplicity: count of numbers of the monitor that vanish there.
     """
 
     kind: str
@@ -62,7 +62,7 @@ class Arc:
         return self.end.length - self.start.length
 
     def at(self, s: float) -> ArcPoint | None:
-        """The point an arclength s beyond the start; None where it cannot be computed."""
+        """Compute the point at an arclength s from the start; None if that fails."""
         if s == 0.0:
             return self.start
         if s == self.step:
@@ -78,7 +78,7 @@ class Arc:
         return self.curve.point(corrected[0], tangent, self.start.length + s)
 
     def zero(self, value: Callable[[ArcPoint], float]) -> ArcPoint | None:
-        """Where a value that changes sign along the piece vanishes; None where it cannot be computed."""
+        """Find the zero of a value that changes sign along the piece; None if that fails."""
         computed: dict[float, ArcPoint] = {0.0: self.start, self.step: self.end}
 
         def value_at(s: float) -> float:
@@ -103,8 +103,8 @@ def bracketed_zero(value: Callable[[float], float], first: tuple[float, float], 
         last: an argument with its value, of the other sign.
 
     Returns:
-        an argument at which it was evaluated, within LOCATED of the zero; not a number where the function is not, or
-        where it has one sign at both arguments.
+        an argument at which the function was evaluated, within LOCATED of the zero; nan if the function is nan, or has
+        one sign at both arguments.
     """
     # Imported here, because a solve meets no event and needs none of SciPy.
     from scipy.optimize import brentq
@@ -124,7 +124,7 @@ def bracketed_zero(value: Callable[[float], float], first: tuple[float, float], 
 
 
 def events_between(arc: Arc) -> list[Event] | None:
-    """Every event of a piece in the order of travel; None where a shorter piece is needed to tell them apart."""
+    """Find all events of a piece in the order of travel; None if a shorter piece is needed to separate them."""
     limits = _limit_points(arc)
     zeros = _monitor_zeros(arc)
     if limits is None or zeros is None:
@@ -155,7 +155,7 @@ DETERMINANT = Monitor(signed_singular_value, feels_limits=False)
 
 
 def _limit_points(arc: Arc) -> list[Event] | None:
-    """The limit point of a piece, if there is one; None where it cannot be computed."""
+    """Find the limit point of a piece, if there is one; None if that fails."""
     falls_at_start = arc.start.load_factor_rate < 0.0
     falls_at_end = arc.end.load_factor_rate < 0.0
     if falls_at_start == falls_at_end:
@@ -167,7 +167,7 @@ def _limit_points(arc: Arc) -> list[Event] | None:
 
 
 def _monitor_zeros(arc: Arc) -> list[ArcPoint] | None:
-    """Where numbers of the monitor change sign, each for itself; None where one cannot be computed."""
+    """Find the zeros of the numbers of the monitor, one by one; None if one cannot be computed."""
     # What is zero at both ends belongs to a symmetry.
     neutral = min(_count_neutral(arc.start.spectrum), _count_neutral(arc.end.spectrum))
     spectra = [_without_neutral(point, neutral) for point in (arc.start, arc.end)]
@@ -182,12 +182,12 @@ def _monitor_zeros(arc: Arc) -> list[ArcPoint] | None:
 
 
 def _monitored(number: int, neutral: int, point: ArcPoint) -> float:
-    """A number of the monitor at a point, counted without neutral ones."""
+    """Number of the monitor at a point, by its index without neutral ones."""
     return float(_without_neutral(point, neutral)[number])
 
 
 def _bifurcations(zeros: list[ArcPoint]) -> list[Event]:
-    """Zeros as events; those at one point are one event of a higher multiplicity."""
+    """Turn zeros into events; zeros at one point are one event of higher multiplicity."""
     events: list[Event] = []
     latest = -np.inf
     for point in sorted(zeros, key=lambda p: p.length):
@@ -201,7 +201,7 @@ def _bifurcations(zeros: list[ArcPoint]) -> list[Event]:
 
 
 def _count_neutral(spectrum: FloatArray) -> int:
-    """How many numbers are zero to rounding."""
+    """Count the numbers that are zero up to rounding."""
     sizes = np.abs(spectrum)
     largest = float(sizes.max(initial=0.0))
     rounding = SINGULAR * max(1.0, largest)
@@ -210,6 +210,6 @@ def _count_neutral(spectrum: FloatArray) -> int:
 
 
 def _without_neutral(point: ArcPoint, neutral: int) -> FloatArray:
-    """The spectrum of a point without the numbers that a symmetry keeps at zero all along the piece, ascending."""
+    """Spectrum of a point without the numbers that symmetry keeps at zero along the whole piece, ascending."""
     by_size = np.argsort(np.abs(point.spectrum), kind="stable")
     return point.spectrum[np.sort(by_size[neutral:])]

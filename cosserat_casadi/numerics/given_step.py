@@ -1,9 +1,9 @@
-"""A step of prescribed size: where its equations are not solved at once, the step grows to its size.
+"""A step of prescribed size, which grows to its size if its equations cannot be solved at once.
 
-With one Jacobian for all stages, Newton's method fails where a step turns a rod far; with one at each stage it goes on.
-Where that fails too, a shorter step from the same start is solved first. No shorter step may stand for the
-prescribed one, but as the size grows, the accelerations and multipliers at the stages change with it continuously: the
-solution for one size predicts the solution for the next, until the prescribed size is reached.
+With one Jacobian for all stages, Newton's method fails if a step turns a rod far; with one at each stage it converges
+further. If that fails too, a shorter step from the same start is solved first. A shorter step cannot replace the
+prescribed one, but the accelerations and multipliers at the stages are continuous functions of the size: the solution
+for one size predicts the solution for the next, until the prescribed size is reached.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ from cosserat_casadi.numerics.stage_newton import StageSolution
 from cosserat_casadi.numerics.step_run import StepRun
 
 LEAST_GROWTH = 2.0**-8
-"""Smallest growth that is tried, as a share of the given size."""
+"""Least increment of the size that is tried, over the prescribed size."""
 
 LONGER = 1.5
-"""Factor on the growth after one that was solved; it is halved after one that was not."""
+"""Factor on the increment after a solved size; it is halved after an unsolved one."""
 
 
 def solve_given_step(run: StepRun) -> StageSolution | StepOutcome:
-    """Solve the equations of the next step of a run, of its present size; else say how the motion ends."""
+    """Solve the equations of the next step of a run, of its present size, or return how the motion ends."""
     solution = run.solve()
     if not isinstance(solution, StepOutcome):
         return solution
@@ -36,10 +36,10 @@ def solve_given_step(run: StepRun) -> StageSolution | StepOutcome:
 
 
 def _grown(run: StepRun, wanted: float) -> tuple[float, StageSolution | None]:
-    """The step with a Jacobian at each stage, of a size that grows to the given one.
+    """Solve the step with a Jacobian at each stage, for a size that grows to the prescribed one.
 
     Returns:
-        the largest share of the size that was solved, and the solution; 0 and None where none is solved.
+        the largest share of the size that was solved, and the solution; 0 and None if none was solved.
     """
     longest = 0.0
     solution = None

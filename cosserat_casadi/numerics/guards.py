@@ -1,8 +1,8 @@
-"""Guards: values along a motion that have to stay at zero or above, and the time at which a guard would not.
+"""Guards: values that must not become negative along a motion, and the time at which one would.
 
-What ends where a guard falls through zero goes on under other equations: a cable that becomes taut, one whose tension
-vanishes. The last step is made just as long as brings that guard to zero, so that its end is a state of the method
-and no interpolation.
+Where a guard falls through zero a motion continues with other equations: a cable becomes taut, or its tension vanishes.
+The size of the last step is chosen so that the guard is zero at its end, which thus is a state of the method and not an
+interpolation.
 """
 
 from __future__ import annotations
@@ -18,30 +18,30 @@ from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.numerics.step import TimeStep
 
 Guards = Callable[[Instant], FloatArray]
-"""State ↦ values that have to stay at zero or above, without unit, shape (m,)."""
+"""State ↦ dimensionless values that must not become negative, shape (m,)."""
 
 THROUGH = 1e-10
-"""Value below zero at which a guard has fallen through: less is rounding of a state that lies on it."""
+"""Size of a negative value at which a guard has fallen through zero; smaller ones are rounding at a zero guard."""
 
 WATCHED = np.linspace(0.0, 1.0, 9)
-"""Shares of a step at which guards are asked for."""
+"""Shares of a step at which guards are evaluated."""
 
 MOST_HALVINGS = 12
-"""Halvings of the time between two looks in which a guard that lies on zero is looked for above it."""
+"""Most halvings of the time between two evaluations in the search for a positive value of a zero guard."""
 
 
 STEEPER = 2.0
 """How much faster than between looks next to them a guard is thought to fall, where it may fall and rise between."""
 
 GOLDEN = (3.0 - 5.0**0.5) / 2.0
-"""Share of an interval at which golden sections are looked at."""
+"""Share of an interval at which golden-section search evaluates."""
 
 MOST_SECTIONS = 40
-"""Golden sections of the time between two looks in which a guard may fall through zero and rise again."""
+"""Most golden sections of the time between two evaluations, in the search for a dip of a guard below zero."""
 
 
 def remembering(guards: Guards) -> Guards:
-    """Guards that remember the last state: a step starts where the one before it has ended."""
+    """Make guards that keep the values of the last state, as a step starts where the step before it ended."""
     last: list[tuple[Instant, FloatArray]] = []
 
     def values(instant: Instant) -> FloatArray:
@@ -53,9 +53,9 @@ def remembering(guards: Guards) -> Guards:
 
 
 def crossing(step: TimeStep, guards: Guards) -> tuple[float, int] | None:
-    """The first time, s, in a step at which a guard falls through zero, and its number; None where none does.
+    """Find the first time, s, in a step at which a guard falls through zero, and its number; None if none does.
 
-    One that falls through zero and rises again between two looks is found where it does so in one dip.
+    A guard that falls through zero and rises again between two evaluations is found if it does so in one dip.
     """
     times = step.start.time + WATCHED * (step.end.time - step.start.time)
     seen = {0: guards(step.start)}
@@ -90,13 +90,13 @@ def crossing(step: TimeStep, guards: Guards) -> tuple[float, int] | None:
 
 
 def _far_from_zero(step: TimeStep, guards: Guards, times: FloatArray, seen: dict[int, FloatArray]) -> bool:
-    """Whether looks at the ends and the middle of a step tell that no guard comes to zero in it.
+    """Whether values at the ends and the middle of a step show that no guard comes to zero in it.
 
     Args:
         step: the step.
-        guards: all of them.
-        times: of all looks, s.
-        seen: values by the number of the look, which these looks are added to.
+        guards: all guards.
+        times: times of all evaluations, s.
+        seen: values by the index of the evaluation, to which new ones are added.
     """
     half = len(times) // 2
     for number in (half, 2 * half):
@@ -111,16 +111,16 @@ def _far_from_zero(step: TimeStep, guards: Guards, times: FloatArray, seen: dict
 def _dip(
     step: TimeStep, guards: Guards, guard: int, between: tuple[float, float], steepest: float
 ) -> tuple[float, float] | None:
-    """A time between two others at which a guard is below zero, with its value; None where its least is not.
+    """Find a time between two others at which a guard is negative, with its value; None if its minimum is not.
 
-    By golden sections: J. Kiefer, *Sequential minimax search for a maximum*, Proc. AMS 4 (1953).
+    Golden-section search: J. Kiefer, *Sequential minimax search for a maximum*, Proc. AMS 4 (1953).
 
     Args:
         step: the step.
-        guards: all of them.
-        guard: number of the guard.
+        guards: all guards.
+        guard: index of the guard.
         between: the times, s.
-        steepest: rate at which it falls at most, 1/s.
+        steepest: largest rate at which it falls, 1/s.
     """
 
     def value(time: float) -> float:
@@ -148,7 +148,7 @@ def _dip(
 
 
 def _zero(step: TimeStep, guards: Guards, guard: int, first: tuple[float, float], last: tuple[float, float]) -> float:
-    """Where one guard vanishes between two times of a step, given with its values there."""
+    """Find the zero of one guard between two times of a step, given with its values there."""
 
     def value(time: float) -> float:
         return float(guards(step.at(time))[guard])

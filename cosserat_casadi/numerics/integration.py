@@ -15,7 +15,7 @@ from cosserat_casadi.numerics.step import CarriedStep, TimeStep
 
 
 class StepOutcome(Enum):
-    """Every way an integration can end. The value is the sentence that a user reads; numbers are beside it."""
+    """Outcomes of an integration. The value is the sentence for the user, without numbers."""
 
     COMPLETED = "The motion was computed to its end."
     STEP_TOO_SMALL = "The motion was computed in part: the steps became too small, it may have no continuation."
@@ -34,19 +34,19 @@ class StepOutcome(Enum):
 
 @dataclass(frozen=True)
 class StepSettings:
-    """How to step.
+    """Settings of the time steps.
 
     Attributes:
-        tolerance: error of one step that each entry of x may have, shape (n,); entries that are algebraic are left out.
-        size: of all steps, s, which then are not controlled: the piece is divided evenly into steps no longer; None
-            for steps as long as the tolerance allows.
-        first: first step, s, where steps are controlled; None for a small share of the piece.
+        tolerance: tolerated error of each entry of x in one step, shape (n,); algebraic entries are ignored.
+        size: largest size of equal steps, s, into which the piece is divided without error control; None for steps as
+            long as the tolerance allows.
+        first: first controlled step, s; None for a small share of the piece.
         longest: longest step, s.
         shortest: shortest step, as a share of the piece.
-        newton: error that Newton's method may leave, over the tolerance.
-        lasting: time, s, over which the error of a shorter step acts: it counts by its quotient with the step.
-        drifting: time, s, below which Newton's method may leave less, as the step is shorter: its error over the step
-            is one of velocities, and what nothing holds keeps them.
+        newton: error of Newton's method, over the tolerance.
+        lasting: time, s, over which the error of a shorter step acts; its error counts by this time over the step.
+        drifting: step size, s, below which the allowed error of Newton's method falls with the size: the error over the
+            step is a velocity, which a free rod keeps.
     """
 
     tolerance: FloatArray
@@ -64,11 +64,11 @@ class IntegrationCost:
     """Numbers of steps, iterations and factorisations of an integration.
 
     Attributes:
-        steps: steps taken.
-        rejected: steps refused, for their error or because their equations were not solved.
-        iterations: Newton iterations, of refused steps too; each evaluates F at every stage.
-        jacobians: Jacobians evaluated.
-        factorisations: times that the matrices of a step were factorised.
+        steps: number of accepted steps.
+        rejected: number of steps refused for their error, or because their equations were not solved.
+        iterations: number of Newton iterations, including refused steps; each evaluates F at every stage.
+        jacobians: number of Jacobian evaluations.
+        factorisations: number of factorisations of the matrices of a step.
     """
 
     steps: int = 0
@@ -78,7 +78,7 @@ class IntegrationCost:
     factorisations: int = 0
 
     def __add__(self, other: IntegrationCost) -> IntegrationCost:
-        """Numbers of both integrations."""
+        """Sum the numbers of two integrations."""
         return IntegrationCost(*map(operator.add, vars(self).values(), vars(other).values()))
 
 
@@ -87,13 +87,13 @@ class Integration:
     """A motion over one piece, or over the part of it that was reached.
 
     Attributes:
-        start: where it began.
-        steps: the steps taken, one after the other.
-        outcome: how it ended.
-        next_size: step that would come next, or that failed, s.
-        statistics: numbers of its steps, iterations and factorisations.
-        guard: number of the guard that came to zero; None where none did.
-        memory: what a next step under the same equations would take over; None where there was no step.
+        start: state at the start.
+        steps: the steps taken, in order.
+        outcome: outcome of the integration.
+        next_size: size of the next step, or of the step that failed, s.
+        statistics: numbers of steps, iterations and factorisations.
+        guard: index of the guard that came to zero; None if none did.
+        memory: data that a next step under these equations would take over; None if there was no step.
     """
 
     start: Instant
@@ -106,17 +106,17 @@ class Integration:
 
     @property
     def end(self) -> Instant:
-        """The last instant that was reached."""
+        """The last instant of the integration."""
         return self.steps[-1].end if self.steps else self.start
 
 
 def stalled_at(start: Instant) -> Integration:
-    """A piece without a step: there are no equations to go on with."""
+    """Make the result of a piece without a step, as there are no equations to continue."""
     return Integration(start, (), StepOutcome.STALLED, float("nan"), IntegrationCost())
 
 
 AfterStep = Callable[[float, float], None]
-"""Called after each step with the time reached and the size of the step, s; KeyboardInterrupt ends the motion."""
+"""Callback after each step, (time reached, size of the step), s; KeyboardInterrupt in it ends the motion."""
 
 Settle = Callable[[TimeStep], Instant]
-"""The end of a step, put right by what the method misses of an invariant: at most as much as the step is inexact by."""
+"""Correction of the end of a step for the drift of an invariant, by at most the error of the step."""

@@ -1,7 +1,7 @@
-"""Equations of motion as the time integrator sees them: an implicit system of second order, with constraints.
+"""Equations of motion for the time integrator: an implicit system of second order, with constraints.
 
-F(t, x, v, a) = 0 with v = dx/dt and a = d²x/dt² for the differential entries of x; of the others, the algebraic ones
-(multipliers, tensions), only the values enter. F is linear in a. Constraints between positions make the index 3.
+F(t, x, v, a) = 0 with v = dx/dt and a = d²x/dt² for the differential entries of x; of the algebraic entries
+(multipliers, tensions) only the values enter. F is linear in a. With constraints between positions the index is 3.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ class Instant:
     """A state of motion at one time; v and a of algebraic entries are zero.
 
     Attributes:
-        time: t, s.
+        time: time t, s.
         x: unknowns, shape (n,).
-        v: their rates, shape (n,), 1/s.
-        a: their accelerations, shape (n,), 1/s².
+        v: rates of the unknowns, shape (n,), 1/s.
+        a: accelerations of the unknowns, shape (n,), 1/s².
     """
 
     time: float
@@ -65,16 +65,16 @@ class MotionEquations:
     """Square equations F(t, x, v, a) = 0 of n unknowns.
 
     Attributes:
-        differential: which entries of x have rates and accelerations; the others are algebraic, shape (n,).
+        differential: mask of the entries of x with rates and accelerations; the others are algebraic, shape (n,).
         residual: (t, x, v, a) ↦ F, shape (n,).
         jacobians: (t, x, v, a) ↦ ∂F/∂x, ∂F/∂v, ∂F/∂a, each of shape (n, n).
-        residuals: F at s instants at once, (t (s,), x (s, n), v (s, n), a (s, n)) ↦ (s, n); None where one at a time
-            is as quick.
-        rates_of_last: (t, x, v) ↦ rates, and second derivatives without the part of a, of constraints that are the last
-            rows, shape (m,) each; None where all constraints are differentiated along the motion by a polynomial.
-        kinks: ascending times at which F has a kink in t that steps may reach over, s.
-        eliminated: indices of entries whose rows have no derivative by another such entry, as flows of
-            branches: they are no unknowns of the linear systems of a step.
+        residuals: F at s instants at once, (t (s,), x (s, n), v (s, n), a (s, n)) ↦ (s, n); None if that is no faster
+            than one at a time.
+        rates_of_last: (t, x, v) ↦ rates, and second rates at zero acceleration, of constraints in the last rows, shape
+            (m,) each; None if all constraints are differentiated along the motion by a polynomial.
+        kinks: ascending times of kinks of F in t that steps may pass, s.
+        eliminated: indices of entries whose rows depend on no other such entry, such as flows of branches; they are
+            eliminated from the linear systems of a step.
     """
 
     differential: npt.NDArray[np.bool_]
@@ -91,12 +91,12 @@ class MotionEquations:
         return len(self.differential)
 
     def residual_at(self, instant: Instant) -> FloatArray:
-        """F at an instant, shape (n,); entries that overflow are not finite."""
+        """Evaluate F at an instant, shape (n,); entries that overflow are not finite."""
         with np.errstate(all="ignore"):
             return self.residual(instant.time, instant.x, instant.v, instant.a)
 
     def residual_of_stages(self, times: FloatArray, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
-        """F at s instants, shape (s, n): times of shape (s,); x, v and a of shape (s, n)."""
+        """Evaluate F at s instants, shape (s, n), for times of shape (s,) and x, v and a of shape (s, n)."""
         with np.errstate(all="ignore"):
             if self.residuals is not None:
                 return self.residuals(times, x, v, a)
@@ -106,7 +106,7 @@ class MotionEquations:
             return rows
 
     def linearised(self, instant: Instant) -> Linearisation:
-        """The derivatives of F at an instant."""
+        """Evaluate the derivatives of F at an instant."""
         with np.errstate(all="ignore"):
             stiffness, damping, mass = self.jacobians(instant.time, instant.x, instant.v, instant.a)
         return Linearisation(stiffness, damping, mass)

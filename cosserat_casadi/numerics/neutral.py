@@ -1,4 +1,4 @@
-"""Directions that symmetry leaves neutral: inverses that move nothing along them, and one direction among them."""
+"""Directions that symmetry leaves neutral: inverses that do not move along them, and the choice of one of them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ TIE = 1e-6
 
 
 def regular(matrix: FloatArray) -> FloatArray:
-    """A square matrix with a stiffness, as large as its largest one, in the directions in which it has none."""
+    """Add the largest singular value of a square matrix as stiffness in its neutral directions."""
     left, singular, right = np.linalg.svd(matrix)
     largest = float(singular.max(initial=0.0))
     neutral = singular <= SINGULAR * largest
@@ -20,7 +20,7 @@ def regular(matrix: FloatArray) -> FloatArray:
 
 
 def regular_inverse(matrix: FloatArray) -> FloatArray:
-    """The inverse of :func:`regular`, without singular values where the matrix is regular by far."""
+    """Invert the matrix of :func:`regular`, without singular values if the matrix is clearly regular."""
     try:
         inverse = np.linalg.inv(matrix)
     except np.linalg.LinAlgError:
@@ -32,17 +32,17 @@ def regular_inverse(matrix: FloatArray) -> FloatArray:
 
 
 def direction_in(basis: FloatArray, leading: int | None = None) -> FloatArray:
-    """The direction of a space that is nearest to the largest coordinate in it, which grows along it.
+    """Choose the direction of a space that is nearest to the axis of its largest coordinate.
 
-    A basis of eigenvectors or singular vectors is known but for rotations in the space, for one vector but for its
-    sign; this direction does not hang on them.
+    A basis of eigenvectors or singular vectors is unique up to rotations in the space, or up to the sign of a single
+    vector; the chosen direction does not depend on these.
 
     Args:
-        basis: orthonormal, one vector a column, shape (n, k).
-        leading: number of coordinates that are looked at; by default all.
+        basis: orthonormal vectors as columns, shape (n, k).
+        leading: number of leading coordinates that are compared; by default all.
 
     Returns:
-        unit vector, shape (n,).
+        the unit vector, shape (n,).
     """
     sizes = np.linalg.norm(basis[:leading], axis=1)
     # The first of equals: which of two alike entries is larger by rounding must not decide.

@@ -1,9 +1,9 @@
-"""Newton's method that keeps a Jacobian while it serves; success is judged here, by finiteness and residual.
+"""Newton's method that keeps a Jacobian as long as it is useful, with a verdict by finiteness and residual.
 
 A Jacobian and its factorisation cost several residuals. Between two Jacobians the steps are corrected by Broyden's
-rank-one updates, which converge superlinearly. A step that does not lower the residual well enough asks for a new
-Jacobian; with a new one it is halved until it does (J. E. Dennis, R. B. Schnabel, *Numerical Methods for Unconstrained
-Optimization and Nonlinear Equations*, SIAM 1996, sections 6.3 and 8.3). See docs/theory.md, section 9.
+rank-one updates, which converge superlinearly. After a step that does not lower the residual sufficiently a new
+Jacobian is formed, with which the step is halved until it does (J. E. Dennis, R. B. Schnabel, *Numerical Methods for
+Unconstrained Optimization and Nonlinear Equations*, SIAM 1996, sections 6.3 and 8.3). See docs/theory.md, section 9.
 
 The exported C takes the same steps, but has no :attr:`NewtonSettings.aim`: it stops at the tolerance.
 """
@@ -20,13 +20,13 @@ from cosserat_casadi.numerics.broyden import Jacobian, UpdatedJacobian
 from cosserat_casadi.numerics.outcome import Outcome
 
 SUFFICIENT_DECREASE = 1e-4
-"""Share of the step length by which the residual norm must fall at least (Armijo's condition)."""
+"""Least decrease of the residual norm, over the norm and the step length (Armijo's condition)."""
 
 SHORTEST_STEP = 2.0**-12
 """Share of a Newton step below which the line search gives up."""
 
 REUSE_DECREASE = 0.5
-"""A Jacobian is kept while a step leaves at most this share of the residual."""
+"""Largest ratio of residuals after and before a step at which the Jacobian is kept."""
 
 MAX_REUSES = 12
 """Most steps with one Jacobian."""
@@ -51,9 +51,9 @@ class NewtonSettings:
 
     Attributes:
         tolerance: bound on the residual norm, see :func:`relative_norm`.
-        aim: residual norm at which to stop; between it and the tolerance full steps go on while they help.
+        aim: residual norm at which to stop; between it and the tolerance, full steps go on while they help.
         iterations: most steps tried.
-        inexact: length of the step that would come next, as the last one foretells it, at which to stop; 0 for never.
+        inexact: predicted length of the next step at which to stop; 0 for never.
         jacobians: most Jacobians factorised.
         damping: whether a step may be shortened.
     """
@@ -68,17 +68,17 @@ class NewtonSettings:
 
 @dataclass(frozen=True)
 class NewtonResult:
-    """Where a Newton solve ended.
+    """Result of a Newton solve.
 
     Attributes:
-        x: last iterate that was accepted; finite whenever the start was.
-        outcome: how it ended.
+        x: last accepted iterate; finite if the start was.
+        outcome: outcome of the solve.
         residual_norm: relative norm of the residual at x.
-        iterations: steps tried.
-        jacobians: Jacobians factorised.
+        iterations: number of steps tried.
+        jacobians: number of Jacobians factorised.
         damped: whether any step had to be shortened.
         residual: residual at x, shape (n,).
-        last_jacobian: the last Jacobian with the steps since; None where none was asked for.
+        last_jacobian: the last Jacobian with the steps since; None if none was formed.
     """
 
     x: FloatArray
@@ -97,8 +97,8 @@ class _Trial:
 
     Attributes:
         step: the full step, shape (n,).
-        length: share of it that was taken.
-        x: where it leads, shape (n,).
+        length: share of the step that was taken.
+        x: unknowns after it, shape (n,).
         residual: residual there, shape (n,).
         norm: 2-norm of that residual.
     """
@@ -119,10 +119,10 @@ class _Iterate:
         residual: residual at x, shape (n,).
         norm: 2-norm of the residual.
         jacobian: the last Jacobian with the steps since; None before the first.
-        reuse_jacobian: whether the next step may take that Jacobian.
-        inexact_enough: whether the last step foretells one shorter than the settings ask to go on for.
-        iterations: steps tried.
-        jacobians: Jacobians factorised.
+        reuse_jacobian: whether the next step may use that Jacobian.
+        inexact_enough: whether the predicted next step is shorter than ``inexact`` of the settings.
+        iterations: number of steps tried.
+        jacobians: number of Jacobians factorised.
         damped: whether a step had to be shortened.
     """
 
@@ -148,12 +148,12 @@ class _Iterate:
         return self.jacobian
 
     def accept(self, trial: _Trial, jacobian: UpdatedJacobian, inexact: float) -> None:
-        """Move on, and decide whether the Jacobian that gave the step serves for the next one.
+        """Accept a step, and decide whether its Jacobian is kept for the next one.
 
         Args:
-            trial: where to.
-            jacobian: what gave the step.
-            inexact: as in :class:`NewtonSettings`.
+            trial: the step.
+            jacobian: Jacobian of the step.
+            inexact: length at which to stop, as in :class:`NewtonSettings`.
         """
         norm_before = self.norm
         self.x = trial.x
@@ -171,7 +171,7 @@ class _Iterate:
         self.reuse_jacobian = decreased and len(jacobian.steps) < MAX_REUSES
 
     def result(self, outcome: Outcome) -> NewtonResult:
-        """The end of the solve at this iterate."""
+        """Make the result of the solve at this iterate."""
         return NewtonResult(
             x=self.x,
             outcome=outcome,
@@ -188,9 +188,9 @@ def newton(equations: Equations, start: FloatArray, settings: NewtonSettings) ->
     """Solve equations from a start.
 
     Args:
-        equations: what to solve.
+        equations: equations to solve.
         start: first iterate, shape (n,).
-        settings: limits.
+        settings: limits of the solve.
     """
     residual = equations.residual(start)
     iterate = _Iterate(start, residual, length_of(residual))
@@ -225,7 +225,7 @@ def newton(equations: Equations, start: FloatArray, settings: NewtonSettings) ->
 
 
 def _outcome_before_step(iterate: _Iterate, settings: NewtonSettings) -> Outcome | None:
-    """How the solve ends at an iterate; None where another step is due."""
+    """Outcome of the solve at an iterate; None if another step is due."""
     # Beside unknowns without a finite norm every residual would be small.
     scale = _scale(iterate.x)
     if not np.isfinite(iterate.norm) or not np.isfinite(scale):
@@ -248,7 +248,7 @@ def _outcome_before_step(iterate: _Iterate, settings: NewtonSettings) -> Outcome
 def _line_search(
     equations: Equations, iterate: _Iterate, step: FloatArray | None, full_step_only: bool
 ) -> _Trial | None:
-    """Halve a step until the residual falls; None where there is no step or none lowers it."""
+    """Halve a step until the residual falls; None if there is no step, or if no share of it helps."""
     if step is None:
         return None
     shortest = 1.0 if full_step_only else SHORTEST_STEP
@@ -266,7 +266,7 @@ def _line_search(
 
 
 def relative_norm(residual: FloatArray, x: FloatArray) -> float:
-    """2-norm of the dimensionless residual over one plus the 2-norm of the unknowns, which rounding scales with."""
+    """2-norm of the dimensionless residual over one plus the 2-norm of the unknowns, as rounding scales with them."""
     scale = _scale(x)
     return length_of(residual) / scale
 
@@ -276,7 +276,7 @@ def _scale(x: FloatArray) -> float:
 
 
 def length_of(vector: FloatArray) -> float:
-    """2-norm; infinite where the squares overflow, which the line search takes for a step too long."""
+    """2-norm; infinite if the squares overflow, so that the line search shortens the step."""
     with np.errstate(over="ignore", invalid="ignore"):
         squares = vector @ vector
         return float(np.sqrt(squares))

@@ -1,4 +1,4 @@
-"""How a solve ended, as data: the value is the sentence that a user reads. See docs/theory.md, sections 9 and 10."""
+"""Outcomes of a solve, whose values are the sentences for the user. See docs/theory.md, sections 9 and 10."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from enum import Enum
 
 
 class Outcome(Enum):
-    """Every way a solve can end. Only CONVERGED carries a result to build on.
+    """Outcomes of a solve. Only CONVERGED comes with a reliable result.
 
     The order gives the numbers in C and in the tables of sweeps: new members come last, but before the outcomes of
-        contact and of concentric tubes, for which C has separate libraries.
+    contact and of concentric tubes, for which C has separate libraries.
     """
 
     CONVERGED = "Equilibrium found: the residual is below its tolerance."
@@ -52,5 +52,5 @@ class Outcome(Enum):
 
     @property
     def label(self) -> str:
-        """The word of the result file."""
+        """Name of the outcome in result files."""
         return self.name.lower()

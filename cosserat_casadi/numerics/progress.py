@@ -1,6 +1,6 @@
-"""How a long task tells its caller where it is: the share that is done, a count, or the stage in words.
+"""Callbacks by which a long task reports its progress: a share, a count, or the stage in words.
 
-Errors that such a function raises end the task and reach the caller.
+An error in a callback ends the task and reaches the caller.
 """
 
 from __future__ import annotations
@@ -8,17 +8,17 @@ from __future__ import annotations
 from collections.abc import Callable
 
 Progress = Callable[[float], None]
-"""Told the share that is done, from 0 at the start to 1 at the end: ``shares.append`` records a solve."""
+"""Callback with the share that is done, from 0 at the start to 1 at the end; ``shares.append`` records a solve."""
 
 CountProgress = Callable[[int, int], None]
-"""Told how many of how many parts are done; the total may grow."""
+"""Callback with the number of finished parts and of all parts; the total may grow."""
 
 Report = Callable[[str], None]
-"""Told each stage when it begins."""
+"""Callback with the name of each stage at its start."""
 
 StageProgress = Callable[[str, int, int], None]
-"""Told the stage under way, how much of it is done, and of how much; 0 of 0 where that is not known."""
+"""Callback with the present stage, the amount that is done, and the total; 0 of 0 if unknown."""
 
 
 def not_told(*news: object) -> None:
-    """Take no note of progress that nobody asked for."""
+    """Ignore progress: the callback by default."""

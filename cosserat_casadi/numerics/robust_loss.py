@@ -1,4 +1,4 @@
-"""Cost of a residual in a fit: its square, or less where it is large, so that outliers weigh less.
+"""Cost of a residual in a fit: its square, or less for a large one, so that outliers weigh less.
 
 The cost of a residual r in standard deviations is ½ ρ(r²); its derivative is r times the weight ρ′(r²). P. J. Huber,
 E. M. Ronchetti, *Robust Statistics*, 2nd ed., Wiley 2009, chapter 7.
@@ -19,14 +19,14 @@ class Loss:
 
     Attributes:
         kind: "squares", "huber" or "cauchy".
-        width: residual from which on it costs less than its square; "squares" has no use for it.
+        width: residual above which the cost is less than the square; unused for "squares".
     """
 
     kind: str = "squares"
     width: float = 2.0
 
     def cost(self, residual: FloatArray) -> float:
-        """Half the sum of ρ(r²)."""
+        """Cost of residuals, half the sum of ρ(r²)."""
         squares = residual * residual
         if self.kind == "squares":
             rho = squares
@@ -38,7 +38,7 @@ class Loss:
         return float(np.sum(rho)) / 2
 
     def weights(self, residual: FloatArray) -> FloatArray:
-        """ρ′(r²) of each residual, from 1 where it is small to 0; shape as the residuals."""
+        """Weight ρ′(r²) of each residual, from 1 for small ones to 0; shape as the residuals."""
         if self.kind == "squares":
             return np.ones_like(residual)
         if self.kind == "huber":
@@ -46,7 +46,7 @@ class Loss:
         return 1 / (1 + (residual / self.width) ** 2)
 
     def noise_squares(self, residual: FloatArray) -> float:
-        """A sum of squares that tells the noise of the data in the covariance (Jᵀ W J)⁻¹ of a weighted fit.
+        """Sum of squares that gives the noise of the data in the covariance (Jᵀ W J)⁻¹ of a weighted fit.
 
         With ψ = ρ′ r the asymptotic covariance of the estimate is mean(ψ²) / mean(ψ′)² (Jᵀ J)⁻¹ (Huber and
         Ronchetti, section 7.6), and Jᵀ W J is about mean(W) Jᵀ J.
@@ -60,7 +60,7 @@ class Loss:
         return float(influence @ influence) * float(np.mean(weights)) / slope**2
 
     def _slopes(self, residual: FloatArray) -> FloatArray:
-        """Derivatives of ψ with the residual; shape as the residuals."""
+        """Derivatives of ψ by the residual; shape as the residuals."""
         if self.kind == "squares":
             return np.ones_like(residual)
         if self.kind == "huber":

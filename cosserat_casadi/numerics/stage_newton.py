@@ -1,11 +1,10 @@
-"""Newton's method for the stages of one step, with one Jacobian and Broyden's updates of it.
+"""Newton's method for the stages of one step, with one Jacobian and its Broyden updates.
 
-One Jacobian serves all stages and all iterations, and further steps while few iterations suffice. Secant updates make
-up for what changes of it within the step: where coordinates are anchored at the base of a rod, some motions move next
-to no mass, and along them a small turn of the rod changes the Jacobian by more than its own size. What counts as
-converged is the error that is left in the positions, and in h times the velocities, as the contraction of the
-corrections foretells it. E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, 2nd ed., Springer 1996,
-section IV.8.
+One Jacobian serves all stages and all iterations, and further steps as long as few iterations suffice. Secant updates
+compensate for its change within the step: with coordinates anchored at the base of a rod, some motions move almost no
+mass, and along them a small rotation of the rod changes the Jacobian by more than its own size. Convergence is judged
+by the remaining error of the positions, and of h times the velocities, predicted from the contraction of the
+corrections. E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, 2nd ed., Springer 1996, section IV.8.
 """
 
 from __future__ import annotations
@@ -22,17 +21,17 @@ from cosserat_casadi.numerics.step import StepPolynomial
 from cosserat_casadi.numerics.step_matrices import StepMatrices
 
 ROUNDING = 16.0 * float(np.finfo(np.float64).eps)
-"""Change of position, relative to the largest, that is rounding and not a correction."""
+"""Change of position, over the largest one, that counts as rounding."""
 
 LEAST_CONTRACTION = 0.1
 """Contraction that is counted on at best: a smaller one tells of the directions in which the Jacobian is good."""
 
 DIVERGING = 10.0
-"""Growth of a correction over the one before that secant updates do not make up for."""
+"""Growth of a correction over the one before at which the iteration counts as diverging, despite secant updates."""
 
 
 class StageOutcome(Enum):
-    """How Newton's method ended in one step."""
+    """Outcomes of Newton's method in one step."""
 
     CONVERGED = auto()
     DIVERGED = auto()
@@ -41,13 +40,13 @@ class StageOutcome(Enum):
 
 @dataclass(frozen=True)
 class StageSolution:
-    """Where Newton's method ended in one step.
+    """Result of Newton's method in one step.
 
     Attributes:
-        unknowns: unknowns of the stages, as in :class:`Step`, shape (s, n).
-        outcome: how it ended.
-        iterations: corrections computed.
-        contraction: ratio of the last two corrections; 0 where there was but one.
+        unknowns: unknowns of the stages, shape (s, n).
+        outcome: outcome of the iteration.
+        iterations: number of corrections.
+        contraction: ratio of the last two corrections; 0 after a single one.
         residual: largest entry of F before the last correction.
     """
 
@@ -60,11 +59,11 @@ class StageSolution:
 
 @dataclass(frozen=True)
 class NewtonBounds:
-    """When Newton's method stops.
+    """Stopping criteria of Newton's method.
 
     Attributes:
-        weights: what each entry of an error is multiplied by before the largest counts; 0 for algebraic ones, (n,).
-        error: weighted error that may be left.
+        weights: weights of the entries of an error, of which the largest counts; 0 for algebraic ones, shape (n,).
+        error: largest remaining weighted error.
         iterations: most corrections of one step.
     """
 
@@ -84,10 +83,10 @@ def solve_stages(
 
     Args:
         equations: the equations of motion.
-        matrices: the factorised linear system, which knows the method and the step h.
-        start: where the step begins.
+        matrices: the factorised linear system, with the method and the step size h.
+        start: state at the start of the step.
         guess: first iterate of the unknowns, shape (s, n).
-        bounds: when to stop.
+        bounds: stopping criteria.
     """
     method = matrices.method
     updates = SecantUpdates(method.matrix, bounds.weights)
@@ -120,13 +119,13 @@ def solve_stages(
 
 
 def _outcome(length: float, longest: float, contraction: float, allowed: float) -> StageOutcome | None:
-    """How the iteration ends with a correction; None where another one is due.
+    """Outcome of the iteration after a correction; None if another one is due.
 
     Args:
-        length: of the correction, weighted.
-        longest: of the corrections before, weighted; infinite for the first.
-        contraction: ratio to the one before; 0 for the first.
-        allowed: weighted error that may be left.
+        length: weighted length of the correction.
+        longest: largest weighted length of the corrections before; infinite for the first.
+        contraction: ratio to the correction before; 0 for the first.
+        allowed: largest remaining weighted error.
     """
     # Where corrections shrink, what is left after this one is shorter than it; where they do not, it is rounding.
     if length <= allowed:
@@ -148,17 +147,17 @@ def _outcome(length: float, longest: float, contraction: float, allowed: float) 
 class SecantUpdates:
     """Broyden's rank-one updates of the linear system of all stages of one step.
 
-    Each makes the inverse B⁻¹ agree with what the last correction did to F, and leaves it as it was across that
-    correction: B₊⁻¹ = (1 + s₊ ŝᵀ) B⁻¹ with the correction s, the one that followed it, s₊, and ŝ the dual of s. Across
-    is meant in weighted changes of velocity, so that units play no part. The updates are never formed. C. T. Kelley,
-    *Iterative Methods for Linear and Nonlinear Equations*, SIAM 1995, section 7.3; :mod:`broyden` has them for
+    Each update makes the inverse B⁻¹ agree with the change of F by the last correction, and does not change it
+    orthogonally to that correction: B₊⁻¹ = (1 + s₊ ŝᵀ) B⁻¹ with the correction s, the next one s₊, and the dual ŝ of s.
+    Orthogonality refers to weighted changes of velocity, so that units do not matter. The updates are never formed.
+    C. T. Kelley, *Iterative Methods for Linear and Nonlinear Equations*, SIAM 1995, section 7.3; :mod:`broyden` is for
     equilibria.
 
     Attributes:
-        matrix: A of the collocation method, shape (s, s): changes of h² a to changes of h v.
-        weights: what each entry of a change of h v is multiplied by, 0 for algebraic ones, shape (n,).
-        taken: corrections taken so far, each of shape (s, n).
-        duals: of each correction s the ŝ with ŝ·s = 1, orthogonal to all vectors across s, each of shape (s, n).
+        matrix: matrix A of the collocation method, from changes of h² a to changes of h v, shape (s, s).
+        weights: weights of the entries of a change of h v, 0 for algebraic ones, shape (n,).
+        taken: corrections so far, each of shape (s, n).
+        duals: dual ŝ of each correction s, with ŝ·s = 1, zero on all vectors orthogonal to s, each of shape (s, n).
     """
 
     matrix: FloatArray
@@ -167,7 +166,7 @@ class SecantUpdates:
     duals: list[FloatArray] = field(default_factory=list)
 
     def applied_to(self, corrections: FloatArray) -> FloatArray:
-        """Corrections with all updates; not finite where the last one says that F would not change along them.
+        """Apply all updates to corrections; the result is not finite if, by the last one, F does not change along them.
 
         Args:
             corrections: solution of the linear system before any update, with F after the last correction, (s, n).
@@ -181,7 +180,7 @@ class SecantUpdates:
         return corrections
 
     def take(self, corrections: FloatArray) -> None:
-        """Add the update of corrections that are taken, shape (s, n), of which some differential entry is not zero."""
+        """Add the update of accepted corrections, shape (s, n), with some nonzero differential entry."""
         weighted = (self.matrix @ corrections) * self.weights
         dual = self.matrix.T @ (weighted * self.weights)
         self.taken.append(corrections)

@@ -1,4 +1,4 @@
-"""A step of a collocation method, from its stages to any time in it.
+"""A step of a collocation method: its stages, and the motion at any time in it.
 
 The unknowns of the stages are accelerations of the differential entries, a_j, and values of the algebraic ones. Their
 polynomial of degree s − 1 through the stages, integrated twice from the start of the step, is the motion in it:
@@ -23,13 +23,13 @@ from cosserat_casadi.numerics.motion_equations import Instant
 
 @dataclass(frozen=True)
 class Stages:
-    """The instants at which a step collocates, side by side.
+    """The instants at which a step collocates, as arrays.
 
     Attributes:
-        times: t₀ + c_i h, shape (s,), s.
-        x: shape (s, n).
-        v: shape (s, n), 1/s.
-        a: shape (s, n), 1/s².
+        times: times t₀ + c_i h, shape (s,), s.
+        x: unknowns, shape (s, n).
+        v: rates, shape (s, n), 1/s.
+        a: accelerations, shape (s, n), 1/s².
     """
 
     times: FloatArray
@@ -40,14 +40,14 @@ class Stages:
 
 @dataclass(frozen=True)
 class StepPolynomial:
-    """The motion in a step, as the unknowns of its stages determine it.
+    """The motion in a step, by the unknowns of its stages.
 
     Attributes:
         method: the collocation method.
-        differential: which entries have accelerations, shape (n,).
-        start: where the step begins, with the acceleration of the step before.
-        size: h, s.
-        unknowns: of the stages: accelerations of differential entries, values of algebraic ones, shape (s, n).
+        differential: mask of the entries with accelerations, shape (n,).
+        start: state at the start, with the acceleration of the step before.
+        size: step size h, s.
+        unknowns: accelerations of differential entries, and values of algebraic ones, at the stages, shape (s, n).
     """
 
     method: Collocation
@@ -58,7 +58,7 @@ class StepPolynomial:
 
     @property
     def accelerations(self) -> FloatArray:
-        """Accelerations at the stages, zero of algebraic entries, shape (s, n), 1/s²."""
+        """Accelerations at the stages, zero for algebraic entries, shape (s, n), 1/s²."""
         return np.where(self.differential, self.unknowns, 0.0)
 
     @property
@@ -72,7 +72,7 @@ class StepPolynomial:
         return Stages(self.start.time + self.method.nodes * self.size, x, v, a)
 
     def arrival(self, time: float) -> Instant:
-        """The end, at its time, s; a method whose last stage is not the end extrapolates accelerations too."""
+        """State at the end, at its time, s; if the last stage is not the end, accelerations are extrapolated too."""
         at_end = self.method.values_at(1.0) @ self.unknowns
         straight_on = self.start.x + self.size * self.start.v
         curved = straight_on + self.size**2 * (self.method.position_weights @ self.accelerations)
@@ -80,7 +80,7 @@ class StepPolynomial:
         return self._instant(time, curved, velocity, at_end)
 
     def at_share(self, share: float, time: float) -> Instant:
-        """The polynomial at a share θ of the step, and the time that belongs to it, s."""
+        """State of the polynomial at a share θ of the step, with the corresponding time, s."""
         values = self.method.values_at(share) @ self.unknowns
         moved = self.method.double_integrals_at(share) @ self.accelerations
         displacement = share * self.size * self.start.v + self.size**2 * moved
@@ -88,7 +88,7 @@ class StepPolynomial:
         return self._instant(time, self.start.x + displacement, velocity, values)
 
     def _instant(self, time: float, x: FloatArray, v: FloatArray, values: FloatArray) -> Instant:
-        """Positions and velocities of differential entries, and the values of the polynomial of all."""
+        """Make a state of positions and velocities of differential entries, and values of the polynomial of all."""
         return Instant(
             time,
             np.where(self.differential, x, values),
@@ -102,11 +102,11 @@ class TimeStep(StepPolynomial):
     """One step of a motion.
 
     Attributes:
-        end: where the step ends.
-        error: estimated error of the step over its tolerance; nan where none was estimated.
-        iterations: Newton iterations of the step as it was taken.
+        end: state at the end of the step.
+        error: estimated error of the step over its tolerance; nan if it was not estimated.
+        iterations: number of Newton iterations of the accepted step.
         residual: largest entry of F at the stages before the last correction.
-        contraction: ratio of the last two corrections; 0 where there was but one.
+        contraction: ratio of the last two corrections; 0 after a single one.
     """
 
     end: Instant
@@ -116,7 +116,7 @@ class TimeStep(StepPolynomial):
     contraction: float
 
     def at(self, time: float) -> Instant:
-        """The motion at a time of the step: exactly at the ends of the step, extrapolated outside.
+        """State at a time of the step; it is exact at both ends of the step, and extrapolated outside.
 
         Positions have an error of order s + 2 in h, velocities of s + 1, accelerations and algebraic entries of s.
         """
@@ -127,15 +127,15 @@ class TimeStep(StepPolynomial):
 
 @dataclass(frozen=True, eq=False)
 class StepRows(Sequence[TimeStep]):
-    """Steps of n unknowns one after the other, as arrays: the record of a step is made where it is asked for.
+    """Consecutive steps of n unknowns, as arrays; the record of a single step is made on demand.
 
     Attributes:
         method: the collocation method, with s stages.
-        differential: which entries have accelerations, shape (n,).
-        begins: x, v and a at the beginning of each of k steps, shape (k, 3, n).
+        differential: mask of the entries with accelerations, shape (n,).
+        begins: x, v and a at the start of each of k steps, shape (k, 3, n).
         ends: x, v and a at the end of each step, shape (k, 3, n).
-        unknowns: of the stages of each step, shape (k, s, n).
-        facts: times at the beginning and at the end, size, s, error, iterations, residual and contraction of each step,
+        unknowns: unknowns of the stages of each step, shape (k, s, n).
+        facts: times at start and end, and size, s, error, iterations, residual and contraction of each step,
             shape (k, 7).
     """
 
@@ -148,7 +148,7 @@ class StepRows(Sequence[TimeStep]):
 
     @classmethod
     def of(cls, steps: Sequence[TimeStep]) -> StepRows:
-        """Steps of one method, at least one, as arrays."""
+        """Convert steps of one method, at least one, to arrays."""
         if isinstance(steps, StepRows):
             return steps
         begins = np.array([[step.start.x, step.start.v, step.start.a] for step in steps])
@@ -162,7 +162,7 @@ class StepRows(Sequence[TimeStep]):
 
     @classmethod
     def joined(cls, blocks: Sequence[StepRows]) -> StepRows:
-        """Blocks of steps of one method as one."""
+        """Join blocks of steps of one method."""
         parts = zip(*((block.begins, block.ends, block.unknowns, block.facts) for block in blocks), strict=True)
         return cls(blocks[0].method, blocks[0].differential, *map(np.concatenate, parts))
 
@@ -228,16 +228,16 @@ class HeldTimes:
 
 @dataclass(frozen=True)
 class CarriedStep:
-    """Data that a step takes over from the steps before it, beside the state that they have reached.
+    """Data, other than the state, that a step takes over from the steps before it.
 
     Attributes:
-        begun: time at which the stretch of equal equations began, s.
-        size: of the step before, s.
-        unknowns: as in :class:`TimeStep`, of the step before, shape (s, n).
-        wanted: size that the next step is to have, s.
-        error: estimated error of the step before over its tolerance; nan where it was not controlled.
+        begun: start time of the stretch with these equations, s.
+        size: size of the step before, s.
+        unknowns: unknowns of the stages of the step before, as in :class:`TimeStep`, shape (s, n).
+        wanted: size of the next step, s.
+        error: estimated error of the step before over its tolerance; nan without error control.
         longest: longest step of the stretch, s.
-        linearised_at: where the Jacobian in use was evaluated; None where the next step evaluates one.
+        linearised_at: state at which the present Jacobian was evaluated; None if the next step evaluates one.
     """
 
     begun: float
@@ -250,13 +250,13 @@ class CarriedStep:
 
 
 def extrapolated(method: Collocation, step: TimeStep | CarriedStep, size: float) -> FloatArray:
-    """Unknowns of the stages of a next step of size h, from the polynomial of the step before, shape (s, n)."""
+    """Extrapolate the unknowns of the stages of a next step of size h from the step before, shape (s, n)."""
     shares = 1.0 + method.nodes * (size / step.size)
     return method.values_at(shares) @ step.unknowns
 
 
 def restricted(step: TimeStep, time: float) -> TimeStep:
-    """The part of a step up to a time in it: the same polynomial, with its values at the stages of a shorter step."""
+    """Cut a step at a time in it: its polynomial is kept, with values at the stages of the shorter step."""
     share = (time - step.start.time) / step.size
     unknowns = step.method.values_at(share * step.method.nodes) @ step.unknowns
     return replace(step, size=time - step.start.time, unknowns=unknowns, end=step.at(time))

@@ -1,7 +1,7 @@
-"""The error of a step, and the size of the next one.
+"""Error estimate of a step, and choice of the size of the next one.
 
-The error is the difference to an embedded formula of order s, which takes the start of the step as a node beside the
-stages: γh times what the polynomial through the stages misses of the acceleration, and of the velocity, at the start.
+The error is the difference from an embedded formula of order s, which takes the start of the step as a further node:
+γh times the deviation of the polynomial through the stages from the acceleration, and from the velocity, at the start.
 It is filtered by the real eigenvalue γ of the method (for two stages by the real part of the complex one), so that
 stiff directions, constraints and massless directions do not spoil it. The step law is Gustafsson's predictive one. E.
 Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, 2nd ed., Springer 1996, section IV.8.
@@ -20,35 +20,35 @@ from cosserat_casadi.numerics.stage_newton import NewtonBounds
 from cosserat_casadi.numerics.step_matrices import Deviation, StepMatrices
 
 MOST_ITERATIONS = 25
-"""Most Newton iterations of a step whose size is controlled: beyond them a shorter one is cheaper."""
+"""Most Newton iterations of a step of controlled size; with more, a shorter step is cheaper."""
 
 SAFETY = 0.9
-"""Share of the step that would just meet the tolerance."""
+"""Safety factor on the step that would just meet the tolerance."""
 
 GROWTH = 5.0
-"""Most by which a step may grow over the one before."""
+"""Largest ratio of a step to the one before."""
 
 SHRINKAGE = 0.125
-"""Least that is left of a step after an error too large."""
+"""Least factor of a step after an error that is too large."""
 
 FIRST_SHRINKAGE = 0.1
-"""Factor of a first step whose error is too large."""
+"""Factor of a first step after an error that is too large."""
 
 WORTH_GROWING = 1.2
 """Growth below which a step keeps its size, and with it its factorised matrices."""
 
 WORTH_SHRINKING = 0.85
-"""Shrinkage above which a step keeps its size, and with it its matrices: its error leaves room for that."""
+"""Shrinkage above which a step keeps its size, and with it its matrices, within the margin of its error."""
 
 SMALLEST_ERROR = 1e-10
-"""Error over tolerance below which a step grows by the most in any case."""
+"""Error over tolerance below which a step always grows by the largest ratio."""
 
 REMEMBERED_ERROR = 1e-2
-"""Least error over tolerance that counts in a trend: smaller ones say little about the next."""
+"""Least error over tolerance in a trend, as smaller ones say little about the next."""
 
 
 def deviation_of(matrices: StepMatrices, start: Instant, unknowns: FloatArray) -> Deviation:
-    """Difference between the embedded formula and the step, not filtered.
+    """Compute the difference between the embedded formula and the step, without filter.
 
     Args:
         matrices: of the step.
@@ -67,15 +67,15 @@ def deviation_of(matrices: StepMatrices, start: Instant, unknowns: FloatArray) -
 def estimated_error(
     matrices: StepMatrices, start: Instant, unknowns: FloatArray, bounds: NewtonBounds, after_a_jump: bool
 ) -> float:
-    """Estimated error of a step over its tolerance: of the positions, and of the velocities times h.
+    """Estimate the error of a step over its tolerance, of the positions and of h times the velocities.
 
     Args:
         matrices: of the step.
         start: where the step begins, with the acceleration that the motion has there.
         unknowns: of the stages, shape (s, n).
         bounds: weights of the entries.
-        after_a_jump: whether the step follows no accepted one. What stiff directions then have of a deviation is
-            taken out twice, where once leaves too much: it would be resolved instead of damped.
+        after_a_jump: whether the step follows no accepted one. The part of a deviation in stiff directions is then
+            filtered twice, as once leaves so much that it would be resolved instead of damped.
     """
     deviation = deviation_of(matrices, start, unknowns)
     filtered = matrices.filtered(deviation)
@@ -95,20 +95,20 @@ def overlooked_error(
     bounds: NewtonBounds,
     pace: float,
 ) -> float:
-    """Error over tolerance by what a step does not see of the equations between its stages.
+    """Estimate the error over tolerance by the change of the equations between the stages of a step.
 
-    At one state F depends on the time alone. Its difference from the polynomial through its values at the stages is
-    a force that the step leaves out; it is taken to be linear between the kinks. With its integral I₀ over the step and
-    the moment I₁ about its end, the velocities at the end miss h M⁻¹ I₀ and the positions h² M⁻¹ I₁. The dynamic
-    stiffness at the real eigenvalue γ stands for M/(γh)², so that stiff directions answer as they do. A missed velocity
-    moves on after the step: it counts for a time in which the motion changes.
+    At a fixed state F depends on time alone. Its difference from the polynomial through its values at the stages is a
+    force that the step omits; it is taken to be linear between kinks. With its integral I₀ over the step and the moment
+    I₁ about the end, the velocities at the end err by h M⁻¹ I₀ and the positions by h² M⁻¹ I₁. The dynamic stiffness at
+    the real eigenvalue γ replaces M/(γh)², so that stiff directions respond as they do. An error of velocity acts on
+    after the step: it counts for a time in which the motion changes.
 
     Args:
         equations: the equations.
-        matrices: of the step.
-        begin: time at which the step begins, s.
-        middle: the state in its middle.
-        kinks: times inside the step, ascending, s.
+        matrices: linear systems of the step.
+        begin: start time of the step, s.
+        middle: state in the middle of the step.
+        kinks: times of kinks inside the step, ascending, s.
         bounds: weights of the entries.
         pace: a time in which the motion changes, not below h, s.
     """
@@ -148,8 +148,8 @@ class StepControl:
         longest: longest step, s.
         wanted: size of the next step, s.
         refused: whether the last step tried was refused.
-        last_size: size of the last step taken, s; 0 before the first.
-        last_error: its error over tolerance.
+        last_size: size of the last accepted step, s; 0 before the first.
+        last_error: error over tolerance of that step.
     """
 
     stages: int
@@ -160,17 +160,17 @@ class StepControl:
     last_error: float = 0.0
 
     def refuse(self, size: float, factor: float) -> None:
-        """Ask for a share of the step that was tried."""
+        """Reduce the next step to a share of the one that was tried."""
         self.refused = True
         self.wanted = factor * size
 
     def refuse_error(self, size: float, error: float, iterations: int) -> None:
-        """Ask for a shorter step after one whose error was too large, or no number.
+        """Reduce the next step after one whose error was too large, or not a number.
 
         Args:
-            size: of the step tried, s.
-            error: its error over tolerance.
-            iterations: of Newton's method.
+            size: size of the step tried, s.
+            error: error of that step over tolerance.
+            iterations: number of Newton iterations.
         """
         factor = FIRST_SHRINKAGE
         # Before the first step nothing says how the error goes with the size.
@@ -179,12 +179,12 @@ class StepControl:
         self.refuse(size, factor)
 
     def accept(self, size: float, error: float, iterations: int) -> None:
-        """Choose the size of the next step after one that is taken.
+        """Choose the size of the next step after an accepted one.
 
         Args:
-            size: of the step, s.
-            error: its error over tolerance, at most one.
-            iterations: of Newton's method.
+            size: size of the step, s.
+            error: error of the step over tolerance, at most one.
+            iterations: number of Newton iterations.
         """
         factor = self._factor(error, iterations)
         if self.last_size:
@@ -203,18 +203,18 @@ class StepControl:
         self.remember(size, error)
 
     def remember(self, size: float, error: float) -> None:
-        """Take note of the last step: its size, s, and its error over tolerance."""
+        """Record the last step: its size, s, and its error over tolerance."""
         self.last_size = size
         self.last_error = max(error, REMEMBERED_ERROR)
 
     def _factor(self, error: float, iterations: int) -> float:
-        """Factor of a step for the next to meet the tolerance; many iterations call for caution."""
+        """Factor with which the next step meets the tolerance; it is more cautious after many iterations."""
         safety = SAFETY * (2 * MOST_ITERATIONS + 1) / (2 * MOST_ITERATIONS + iterations)
         factor = safety * max(error, SMALLEST_ERROR) ** (-1.0 / (self.stages + 1))
         return float(np.clip(factor, SHRINKAGE, GROWTH))
 
     def _predicted_factor(self, size: float, error: float) -> float:
-        """Factor of a step that the trend of the last two errors allows (Gustafsson)."""
+        """Factor of the next step by the trend of the last two errors (Gustafsson)."""
         current = max(error, SMALLEST_ERROR)
         trend = (self.last_error / current**2) ** (1.0 / (self.stages + 1))
         factor = SAFETY * size / self.last_size * trend

@@ -1,9 +1,9 @@
-"""The linear systems of one step: the dynamic stiffness at the eigenvalues of the method.
+"""The linear systems of one step: dynamic stiffnesses at the eigenvalues of the method.
 
-With the accelerations a_j and the algebraic values as unknowns of the stages, one Jacobian (K, C, M) for all of them
-and the eigenvalues μ of A, the system of the stages falls apart into dynamic stiffnesses D(p) = K + p C + p² M at
-p = 1/(hμ): real ones and one of each conjugate pair. Its unknowns are changes of position, and multipliers as they
-are: in these units no power of h is lost between rows of balance and rows of constraints once rows and columns are
+With the accelerations a_j and the algebraic values as unknowns of the stages, and one Jacobian (K, C, M) for all of
+them, the eigenvalues μ of A decouple the system of the stages into dynamic stiffnesses D(p) = K + p C + p² M at
+p = 1/(hμ): one for each real μ and for each conjugate pair. The unknowns are changes of position, and unscaled
+multipliers: in these units no power of h separates rows of balance and of constraints after rows and columns are
 scaled (C. L. Bottasso, D. Dopico, L. Trainelli, *On the optimal scaling of index three DAEs in multibody dynamics*,
 Multibody System Dynamics 19 (2008) 3–20). The method of eigenvalues: E. Hairer, G. Wanner, *Solving Ordinary
 Differential Equations II*, 2nd ed., Springer 1996, section IV.8.
@@ -23,7 +23,7 @@ from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.motion_equations import Linearisation
 
 SINGULAR = 1e15
-"""Condition, rows and columns scaled, beyond which a dynamic stiffness counts as singular."""
+"""Condition number, after scaling, above which a dynamic stiffness counts as singular."""
 
 
 @dataclass(frozen=True)
@@ -31,8 +31,8 @@ class Deviation:
     """A change of state at the end of a step.
 
     Attributes:
-        position: shape (n,).
-        velocity: shape (n,), 1/s.
+        position: change of position, shape (n,).
+        velocity: change of velocity, shape (n,), 1/s.
     """
 
     position: FloatArray
@@ -48,10 +48,10 @@ class StepMatrices:
 
     Attributes:
         method: the collocation method.
-        step: h, s.
-        linearisation: K, C and M they are made of.
+        step: step size h, s.
+        linearisation: derivatives K, C and M.
         inverses: D(p)⁻¹ at each eigenvalue of the method, each of shape (n, n), real or complex.
-        shares: accelerations times h² over changes of position, 1/μ²; 1 for algebraic entries, shape (k, n).
+        shares: ratio 1/μ² of h² times accelerations to changes of position; 1 for algebraic entries, shape (k, n).
     """
 
     method: Collocation
@@ -61,13 +61,13 @@ class StepMatrices:
     shares: npt.NDArray[np.complex128]
 
     def corrections(self, residuals: FloatArray) -> FloatArray:
-        """Newton's corrections of all stages.
+        """Compute Newton's corrections of all stages.
 
         Args:
             residuals: F at the stages, shape (s, n).
 
         Returns:
-            changes of h² a for differential entries, of the values for algebraic ones, shape (s, n).
+            changes of h² a for differential entries, and of the values for algebraic ones, shape (s, n).
         """
         transformed = self.method.to_eigenvectors @ residuals
         solutions = np.empty_like(transformed)
@@ -77,17 +77,17 @@ class StepMatrices:
         return np.asarray(-changes.real)
 
     def answer(self, rows: FloatArray) -> FloatArray:
-        """Changes of the unknowns by rows of F, shape (n,), by the dynamic stiffness at the first eigenvalue."""
+        """Solve the dynamic stiffness at the first eigenvalue for changes of the unknowns by rows of F, shape (n,)."""
         return np.asarray(_product(self.inverses[0], rows).real)
 
     def filtered(self, deviation: Deviation) -> Deviation:
-        """(1 − hμJ)⁻¹ applied to a deviation, J the Jacobian of the equations as a system of first order.
+        """Apply (1 − hμJ)⁻¹ to a deviation, with the Jacobian J of the equations as a first-order system.
 
-        What stiff directions would damp at once is taken out of it, and what a constraint forbids. With a complex
-        eigenvalue μ it is the real part.
+        This removes parts that stiff directions damp at once, and parts that violate constraints. For a complex μ the
+        result is the real part.
 
         Args:
-            deviation: what to filter.
+            deviation: deviation to be filtered.
         """
         inverse = self.inverses[0]
         rate = 1.0 / (self.step * self.method.eigenvalues[0])
@@ -100,7 +100,7 @@ class StepMatrices:
 
 
 def _product(matrix: npt.NDArray[Any], vector: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """A matrix times a vector, on one core: a BLAS that wakes its threads for so little may wait long for them."""
+    """Multiply a matrix and a vector on one core, as the start of BLAS threads may take longer than the product."""
     return np.asarray(np.einsum("ij,j->i", matrix, vector))
 
 
@@ -115,13 +115,13 @@ def step_matrices(
 
     Args:
         method: the collocation method.
-        step: h, s.
-        linearisation: K, C and M.
-        differential: which entries have accelerations, shape (n,).
-        eliminated: indices of entries whose rows have no derivative by another such entry.
+        step: step size h, s.
+        linearisation: derivatives K, C and M.
+        differential: mask of the entries with accelerations, shape (n,).
+        eliminated: indices of entries whose rows depend on no other such entry.
 
     Returns:
-        the matrices; None where a matrix is singular to rounding.
+        the matrices; None if a matrix is singular up to rounding.
     """
     inverses = []
     shares = np.ones((len(method.eigenvalues), len(differential)), dtype=np.complex128)
@@ -139,13 +139,13 @@ def step_matrices(
 
 
 def condensed_inverse(matrix: npt.NDArray[Any], eliminated: npt.NDArray[np.intp]) -> npt.NDArray[Any] | None:
-    """Inverse of a matrix whose block of eliminated entries is diagonal; None where it is singular to rounding.
+    """Invert a matrix whose block of eliminated entries is diagonal; None if it is singular up to rounding.
 
     Only the Schur complement of the other entries is inverted.
 
     Args:
-        matrix: shape (n, n).
-        eliminated: indices of entries.
+        matrix: the matrix, shape (n, n).
+        eliminated: indices of the eliminated entries.
     """
     if not eliminated.size:
         return scaled_inverse(matrix)
@@ -167,7 +167,7 @@ def condensed_inverse(matrix: npt.NDArray[Any], eliminated: npt.NDArray[np.intp]
 
 
 def scaled_inverse(matrix: npt.NDArray[Any]) -> npt.NDArray[Any] | None:
-    """Inverse by way of a matrix whose largest entry of every row and column is one; None where it is singular."""
+    """Invert a matrix after scaling the largest entry of each row and column to one; None if it is singular."""
     sizes = np.abs(matrix)
     rows = sizes.max(axis=1)
     if not np.all(rows > 0.0):

@@ -1,4 +1,4 @@
-"""An integration in time on its way: the last instant reached, the Jacobian in use, and the work spent."""
+"""State of an integration in time: the last instant, the present Jacobian, and the work so far."""
 
 from __future__ import annotations
 
@@ -20,37 +20,37 @@ from cosserat_casadi.numerics.step_control import MOST_ITERATIONS, estimated_err
 from cosserat_casadi.numerics.step_matrices import StepMatrices, step_matrices
 
 RESOLVED_TIME = 16.0 * float(np.finfo(np.float64).eps)
-"""Smallest step, relative to the time, that rounding of the time does not blur."""
+"""Smallest step, over the time, that is resolved despite the rounding of the time."""
 
 MOST_LENGTHS = 8
-"""Lengths that are tried for a step that ends where a guard vanishes."""
+"""Most sizes that are tried for a step that ends at the zero of a guard."""
 
 NEARBY = 1e-3
-"""Share of a step before its end at which a guard is compared for its rate."""
+"""Distance before the end of a step, over its size, at which a guard is evaluated for its rate."""
 
 AT_START = 1e-10
-"""Share of a step after its start in which a guard counts as zero where the step starts."""
+"""Share of a step at its start within which a zero of a guard counts as one at the start."""
 
 CLOSED = 1e-9
-"""Row of a constraint, without unit, up to which it counts as closed."""
+"""Largest dimensionless residual of a constraint that counts as closed."""
 
 ON_GUARD = 1e-13
 """Value of a guard that counts as zero."""
 
 ROUNDED = 1e-11
-"""Value of a guard that counts as zero where no other length of the step brings it nearer: Newton leaves as much."""
+"""Value of a guard that counts as zero if no other size of the step reduces it, as Newton's method leaves as much."""
 
 NEARER = 0.5
-"""Share of the value at the length before from which on a guard is no nearer."""
+"""Least ratio of a guard's values at consecutive sizes at which the guard counts as no nearer to zero."""
 
 MOST_LASTING = 100.0
-"""Largest factor on the error of a step by its shortness: what Newton's method leaves of short ones counts too."""
+"""Largest factor on the error of a short step, as the error of Newton's method in short steps counts too."""
 
 FEW_ITERATIONS = 4
-"""Iterations of a step up to which its Jacobian serves the next step too: to save more iterations costs as much."""
+"""Most iterations of a step whose Jacobian also serves the next step; a new one costs as much as more iterations."""
 
 ITERATIONS_OF_GIVEN_STEP = 30
-"""Most Newton iterations, with one Jacobian, of a step of prescribed size: no shorter step may stand for it."""
+"""Most Newton iterations, with one Jacobian, of a step of prescribed size, which no shorter step may replace."""
 
 
 @dataclass
@@ -60,24 +60,24 @@ class StepRun:
     Attributes:
         equations: the equations.
         method: the collocation method.
-        settings: how to step.
-        start: where the motion begins.
-        stop: time at which it shall end, s.
+        settings: settings of the steps.
+        start: state at the start of the motion.
+        stop: end time of the motion, s.
         steps: the steps taken one by one.
-        rows: blocks of the steps taken after these by other code, which nothing looks at one by one.
-        size: of the step to be tried next, s.
-        bounds: weights of an error, and when Newton's method stops.
-        linearisation: the Jacobian in use; None where the next step needs a new one.
-        fresh: whether that Jacobian was evaluated after the last instant reached.
-        matrices: the linear systems in use; None where there are none for the Jacobian.
-        cost: numbers so far, of steps refused too.
-        longest: step taken so far, s.
-        before: what the first step takes over from those up to the start; None where there are none.
-        memory: what a next step would take over after the last one taken.
-        linearised_at: where the Jacobian in use was evaluated.
-        guards: values that have to stay at zero or above; None where there are none.
-        settled: instant to go on from, in place of the end of the last step; None for the end of that step.
-        guard: number of the guard that came to zero; None where none did.
+        rows: blocks of the later steps, which other code has taken.
+        size: size of the step to be tried next, s.
+        bounds: weights of an error, and stopping criteria of Newton's method.
+        linearisation: the present Jacobian; None if the next step needs a new one.
+        fresh: whether that Jacobian was evaluated after the last instant.
+        matrices: the present linear systems; None if there are none for the Jacobian.
+        cost: numbers so far, including refused steps.
+        longest: longest step so far, s.
+        before: data for the first step from steps up to the start; None if there are none.
+        memory: data for the next step after the last one.
+        linearised_at: state at which the present Jacobian was evaluated.
+        guards: values that must not become negative; None without guards.
+        settled: instant from which to go on, in place of the end of the last step; None for the end of that step.
+        guard: index of the guard that came to zero; None if none did.
     """
 
     equations: MotionEquations
@@ -118,17 +118,17 @@ class StepRun:
 
     @property
     def begun(self) -> float:
-        """Time at which the stretch of equal equations began, s: the start, unless a motion goes on there."""
+        """Start time of the stretch with these equations, s: the start, unless a motion continues there."""
         return self.start.time if self.before is None else self.before.begun
 
     @property
     def now(self) -> Instant:
-        """The last instant reached."""
+        """The last instant that was reached."""
         steps: Sequence[TimeStep] = self.rows[-1] if self.rows else self.steps
         return steps[-1].end if steps else self.start
 
     def result(self, outcome: StepOutcome) -> Integration:
-        """The end of the integration."""
+        """Make the result of the integration."""
         steps: Sequence[TimeStep] = tuple(self.steps)
         if self.rows:
             before = [StepRows.of(steps)] if steps else []
@@ -137,12 +137,12 @@ class StepRun:
         return Integration(self.start, steps, outcome, self.size, statistics, self.guard, self.memory)
 
     def renew_jacobian(self) -> None:
-        """Have the next step evaluate a new Jacobian."""
+        """Make the next step evaluate a new Jacobian."""
         self.linearisation = None
         self.matrices = None
 
     def solve(self) -> StageSolution | StepOutcome:
-        """Solve the equations of a step of the present size; else say how the motion ends if no other is tried."""
+        """Solve the equations of a step of the present size, or return how the motion ends if no other is tried."""
         solution = self._solve_with_jacobian()
         if isinstance(solution, StepOutcome) and not self.fresh:
             # The Jacobian may be too old: the same step gets one of its own.
@@ -154,7 +154,7 @@ class StepRun:
         return solution
 
     def solve_coupled(self, guess: FloatArray) -> StageSolution | None:
-        """Solve them with a Jacobian at each stage, damped; None where that fails too.
+        """Solve the equations with a Jacobian at each stage, damped; None if that fails too.
 
         Args:
             guess: first iterate of the stages, shape (s, n).
@@ -167,7 +167,7 @@ class StepRun:
         return solution if solution.outcome is StageOutcome.CONVERGED else None
 
     def _solve_with_jacobian(self) -> StageSolution | StepOutcome:
-        """Solve with the Jacobian in use, or a new one where there is none."""
+        """Solve with the present Jacobian, or a new one if there is none."""
         guess = self.guess()
         linearisation = self.linearisation
         if linearisation is None:
@@ -193,13 +193,13 @@ class StepRun:
         return StepOutcome.NOT_SOLVED if self._finite_here() else StepOutcome.NOT_FINITE
 
     def _finite_here(self) -> bool:
-        """Whether F is finite at the start of the step and straight on from it: else no iterate is to blame."""
+        """Whether F is finite at the start of the step and straight on from it, so that iterates cause a failure."""
         now = self.now
         straight_on = Instant(now.time + self.size, now.x + self.size * now.v, now.v, now.a)
         return all(bool(np.all(np.isfinite(self.equations.residual_at(instant)))) for instant in (now, straight_on))
 
     def guess(self) -> FloatArray:
-        """First iterate of the stages: the polynomial of the step before, or the start."""
+        """First iterate of the stages, from the polynomial of the step before, or from the start."""
         last = self.steps[-1] if self.steps else self.before
         if last is not None:
             return extrapolated(self.method, last, self.size)
@@ -207,12 +207,12 @@ class StepRun:
         return np.tile(unknowns, (self.method.stages, 1))
 
     def _middle(self, guess: FloatArray) -> Instant:
-        """The middle of the step as the first iterate has it: a Jacobian there is nearest to all stages' Jacobians."""
+        """State in the middle of the step by the first iterate, where a Jacobian is nearest to those of all stages."""
         time = self.now.time + self.size / 2.0
         return StepPolynomial(self.method, self.equations.differential, self.now, self.size, guess).at_share(0.5, time)
 
     def error_of(self, solution: StageSolution, after_a_jump: bool) -> float:
-        """Estimated error over tolerance of the step that was solved last."""
+        """Estimate the error over tolerance of the step that was solved last."""
         if self.matrices is None:
             return float("nan")
         error = estimated_error(self.matrices, self.now, solution.unknowns, self.bounds, after_a_jump)
@@ -221,7 +221,7 @@ class StepRun:
         return error * float(np.clip(self.settings.lasting / self.size, 1.0, MOST_LASTING))
 
     def _overlooked(self, solution: StageSolution, matrices: StepMatrices) -> float:
-        """Error over tolerance by what the stages do not see of the equations between them, at their kinks in time."""
+        """Estimate the error over tolerance by kinks of the equations in time between the stages."""
         end = self.now.time + self.size
         kinks = self.equations.kinks
         inside = kinks[bisect_right(kinks, self.now.time) : bisect_left(kinks, end)]
@@ -232,13 +232,13 @@ class StepRun:
         return overlooked_error(self.equations, matrices, self.now.time, middle, inside, self.bounds, pace)
 
     def accept(self, solution: StageSolution, end: float, error: float, wanted: float) -> None:
-        """Take a step, and decide whether its Jacobian serves the next one.
+        """Accept a step, and decide whether its Jacobian serves the next one.
 
         Args:
-            solution: of its stages.
-            end: time at which it ends, s.
-            error: estimated error over its tolerance; nan where it is not controlled.
-            wanted: size that the next one is to have, s.
+            solution: solution of its stages.
+            end: end time of the step, s.
+            error: estimated error over tolerance; nan without error control.
+            wanted: size of the next step, s.
         """
         differential = self.equations.differential
         now = self.now
@@ -265,13 +265,13 @@ class StepRun:
         self.memory = CarriedStep(self.begun, self.size, step.unknowns, wanted, error, self.longest, linearised_at)
 
     def add(self, step: TimeStep) -> None:
-        """Append a step that is taken, its end put right."""
+        """Append an accepted step, after the correction of its end."""
         if self.settled is not None:
             step = replace(step, end=self.settled(step))
         self.steps.append(step)
 
     def stopped_by_guard(self) -> bool:
-        """Whether a guard fell through zero in the last step; the step is then taken anew, and ends where it did."""
+        """Whether a guard fell through zero in the last step; the step is then retaken to end there."""
         if self.guards is None:
             return False
         whole = self.steps[-1]
@@ -289,17 +289,17 @@ class StepRun:
         return True
 
     def _open(self, step: TimeStep) -> bool:
-        """Whether the end of a step leaves constraints open."""
+        """Whether the end of a step violates constraints."""
         rows = self.equations.residual_at(step.end)[~self.equations.differential]
         return not float(np.abs(rows).max(initial=0.0)) <= CLOSED
 
     def _step_to(self, cut: TimeStep, guard: int) -> None:
-        """Take a step that ends where a guard vanishes.
+        """Take a step that ends at the zero of a guard.
 
         Args:
-            cut: the part of a longer step to the time, about, at which it does; it stands where no step is found that
-                ends on the guard. Where it leaves the constraints open the first step that was found stands.
-            guard: number of the guard.
+            cut: part of a longer step up to about that time; it is kept if no step is found that ends on the guard,
+                unless it violates the constraints: then the first step that was found is kept.
+            guard: index of the guard.
         """
         assert self.guards is not None
         time = cut.end.time

@@ -31,43 +31,43 @@ from cosserat_casadi.numerics.step_control import StepControl
 from cosserat_casadi.numerics.step_run import RESOLVED_TIME, StepRun
 
 FIRST_SHARE = 1e-3
-"""First step as a share of the piece, where none is suggested."""
+"""Default first step, as a share of the piece."""
 
 SINGULAR_STEPS = 4
-"""Steps in a row, each shorter than the last, whose matrices are singular before the equations count as singular."""
+"""Consecutive, ever shorter steps with singular matrices after which the equations count as singular."""
 
 SINGULAR_SHRINKAGE = 0.1
-"""Factor of a step whose matrices are singular."""
+"""Factor on a step whose matrices are singular."""
 
 TRIES = 1000
-"""Steps, taken or refused, after which a motion has to be on its way."""
+"""Number of tried steps over which the pace of a motion is judged."""
 
 SLOWEST = 3e-6
-"""Share of the piece that these tries have to bring on average: slower, the end is hundreds of thousands away."""
+"""Least share of the piece per try, on average; with less, the end is hundreds of thousands of tries away."""
 
 WHOLE = 1e-9
-"""Distance of a quotient of times from a whole number that is put down to rounding."""
+"""Distance of a quotient of times from an integer that counts as rounding."""
 
 ROUNDING = 1e-14
-"""Relative distance of two times up to which they are one and the same time with rounding."""
+"""Relative difference of two times up to which they count as equal."""
 
 FAILED_SHRINKAGE = 0.5
-"""Factor of a step whose equations were not solved."""
+"""Factor on a step whose equations were not solved."""
 
 
 class StepsElsewhere(Protocol):
-    """The steps of one integration, taken by other code than this module's, with the same digits."""
+    """The steps of one integration, taken by other code than this module with equal results to the last digit."""
 
     def take(self, one: bool) -> tuple[StepOutcome | None, list[float]]:
-        """Take a step, or many, which the run then has as rows.
+        """Take one step, or many, and append them to the rows of the run.
 
         Returns:
-            how the motion ends, None where it goes on; and the time before each step that was tried, s.
+            the outcome of the motion, None if it goes on; and the start time of each step that was tried, s.
         """
 
 
 Stepper = Callable[[StepRun, StepControl, float], StepsElsewhere]
-"""(run, control, shortest step) ↦ the steps of the run, whose sizes are controlled."""
+"""(run, control, shortest step) ↦ other code for the steps of the run, of controlled size."""
 
 StepperAfter = Callable[[int, float], Stepper | None]
 """(iterations taken, share of the piece done) ↦ other code for the rest of the steps; None while there is none."""
@@ -90,17 +90,17 @@ def integrate(
 
     Args:
         equations: the equations.
-        start: where to begin, consistent with the constraints; its a and its algebraic entries begin the first
-            iteration, and its a the first estimate of an error, see :func:`consistent_start`.
-        end: time, s.
+        start: initial state, consistent with the constraints; its a and algebraic entries start the first iteration,
+            and its a enters the first error estimate, see :func:`consistent_start`.
+        end: end time, s.
         method: the collocation method.
-        settings: how to step.
-        after_step: told of every step.
-        guards: values that have to stay at zero or above; where one does not, the motion ends.
-        settled: what puts the end of each step right; None for ends as they are.
-        memory: of the steps up to the start, where a motion goes on in a piece: it takes the very steps of one motion.
-        stepper: other code that takes steps whose sizes are controlled; None for the code of this module.
-        stepper_after: asked after each step of this module for other code that takes the rest; None for none.
+        settings: settings of the steps.
+        after_step: callback after every step.
+        guards: values that must not become negative; at the zero of one, the motion ends.
+        settled: correction of the end of each step; None for no correction.
+        memory: data of the steps up to the start, if a motion continues within a piece with the steps of one motion.
+        stepper: other code for steps of controlled size; None for the code of this module.
+        stepper_after: function that offers other code for the rest after each step of this module; None without it.
 
     Raises:
         ValueError: the method does not suit the equations or the settings; or times, sizes or tolerances are not
@@ -123,7 +123,7 @@ def integrate(
 
 
 def _check(equations: MotionEquations, start: Instant, end: float, method: Collocation, settings: StepSettings) -> None:
-    """Refuse what cannot be integrated.
+    """Refuse equations, times and settings that cannot be integrated.
 
     Raises:
         ValueError: with all that is wrong.
@@ -172,13 +172,13 @@ def _equal_steps(run: StepRun, size: float, after_step: AfterStep | None) -> Ste
 
 
 def _crawls(reached: Sequence[float], length: float) -> bool:
-    """Whether a motion is on its way at a pace that leads nowhere.
+    """Whether the pace of a motion is too slow to reach its end.
 
-    One whose steps shrink is not: it is about to end by their size.
+    A motion whose steps shrink does not count: it is about to end by their size.
 
     Args:
-        reached: times before each of the last tries, at most TRIES.
-        length: of the piece, s.
+        reached: start times of the last tries, at most TRIES, s.
+        length: duration of the piece, s.
     """
     if len(reached) < TRIES or reached[-1] - reached[0] >= SLOWEST * TRIES * length:
         return False
@@ -238,7 +238,7 @@ def _controlled_steps(
 def _steps_elsewhere(
     run: StepRun, control: StepControl, steps: StepsElsewhere, after_step: AfterStep | None
 ) -> StepOutcome:
-    """Have other code take steps as long as the tolerance allows: one by one where each is looked at."""
+    """Let other code take steps as long as the tolerance allows, one by one if there is a callback."""
     length = run.stop - run.begun
     looked_at = after_step is not None or run.guards is not None or run.settled is not None
     reached = deque([run.now.time], maxlen=TRIES)
@@ -260,7 +260,7 @@ def _steps_elsewhere(
 
 
 def _next_step(now: float, wanted: float, stop: float) -> tuple[float, float]:
-    """Size of the next step and where it ends, s, so that no tiny one is left at the end of the piece."""
+    """Choose the size of the next step and its end, s, so that no tiny step remains at the end of the piece."""
     remaining = stop - now
     if remaining <= wanted:
         return remaining, stop
@@ -271,7 +271,7 @@ def _next_step(now: float, wanted: float, stop: float) -> tuple[float, float]:
 
 
 def _try_step(run: StepRun, control: StepControl, end: float) -> StepOutcome | None:
-    """Try a step of the run's size and choose the next one; None where it is taken, else why the motion may end."""
+    """Try a step of the run's size and choose the next size; None if it is accepted, else how the motion may end."""
     solution = run.solve()
     if isinstance(solution, StepOutcome):
         shrinkage = SINGULAR_SHRINKAGE if solution is StepOutcome.SINGULAR else FAILED_SHRINKAGE

@@ -1,4 +1,4 @@
-"""A curve of equilibria from load factor 0 to 1: steps, their control, the events on the way, the end.
+"""A curve of equilibria from load factor 0 to 1: steps, step control, events on the way, and the end.
 
 A branch that crosses the curve leaves along a null vector of ∂g/∂y across it. A point at a small distance along it is
 corrected onto the branch in the plane across that vector: E. L. Allgower, K. Georg, *Introduction to Numerical
@@ -23,13 +23,13 @@ GROWTH = 1.5
 """Factor on the step after a quick correction."""
 
 SEPARATE = 1e-4
-"""Step below which events that cannot be told apart are left out rather than looked at more closely."""
+"""Step below which events that cannot be separated are left out."""
 
 FARTHEST = -1.0
-"""Load factor below which a path counts as led back."""
+"""Load factor below which a path counts as running backwards."""
 
 AWAY = 4
-"""Steps that a path must be long before coming near its start closes it."""
+"""Number of steps after which a path that comes near its start counts as closed."""
 
 
 Guard = Callable[[Arc, ArcPoint], ArcPoint | None]
@@ -37,7 +37,7 @@ Guard = Callable[[Arc, ArcPoint], ArcPoint | None]
 
 
 class PathOutcome(Enum):
-    """Every way a path can end. Only CONVERGED has reached factor 1."""
+    """Outcomes of a path. Only CONVERGED has reached load factor 1."""
 
     CONVERGED = "The path reached its end, factor 1."
     NO_START = "No path: at factor 0 there is no equilibrium to start from."
@@ -67,7 +67,7 @@ class PathOutcome(Enum):
 
     @property
     def label(self) -> str:
-        """The word of the result file."""
+        """Name of the outcome in result files."""
         return self.name.lower()
 
 
@@ -78,9 +78,9 @@ class Trace:
     Attributes:
         points: accepted points in the order of travel.
         events: special points in the order of travel.
-        outcome: how it ended; None while under way.
-        branch: index of the first point on the crossing branch, None while on the first curve.
-        corner: arclength behind the last corner.
+        outcome: outcome of the path; None while it is followed.
+        branch: index of the first point on the crossing branch; None on the first curve.
+        corner: arclength just behind the last corner.
     """
 
     points: list[ArcPoint]
@@ -95,10 +95,10 @@ def trace(curve: Curve, *, branch: int = 0, progress: Progress | None = None, gu
 
     Args:
         curve: the curve.
-        branch: number of the bifurcation, counted from 1, to leave at along the branch that crosses there; negative
-            for the other half of that branch, 0 goes straight on.
+        branch: number of the bifurcation, counted from 1, at which to leave along the crossing branch; negative for the
+            other half of that branch, 0 to go straight on.
         progress: receives the largest load factor reached, in [0, 1].
-        guard: the guard of :func:`extend`.
+        guard: guard of the steps, as in :func:`extend`.
     """
     # The start has no point before it: that the load grows decides which way is forward.
     unloaded = np.append(curve.path.start, 0.0)
@@ -130,9 +130,9 @@ def extend(curve: Curve, traced: Trace, step: float, leave_at: int, guard: Guard
         curve: the curve.
         traced: the computed part of the curve.
         step: arclength to try.
-        leave_at: as ``branch`` of :func:`trace`.
-        guard: (step, its end) ↦ the point at which to stop within it, by default its end; None where the step is too
-            long to say.
+        leave_at: number of the bifurcation, as ``branch`` of :func:`trace`.
+        guard: (step, its end) ↦ the point at which to stop within it, by default its end; None if the step is too long
+            to decide.
 
     Returns:
         the step to try next.
@@ -179,7 +179,7 @@ def extend(curve: Curve, traced: Trace, step: float, leave_at: int, guard: Guard
 
 
 def _halved(traced: Trace, step: float, shortest: float) -> float:
-    """Half of a step that was refused; the path ends where that is too short."""
+    """Halve a refused step; the path ends if it becomes too short."""
     half = step / 2
     if half < shortest:
         traced.outcome = PathOutcome.LOAD_STALLED
@@ -187,7 +187,7 @@ def _halved(traced: Trace, step: float, shortest: float) -> float:
 
 
 def _end(arc: Arc) -> ArcPoint:
-    """The end of a step, or the point within it at which the load factor reaches 1."""
+    """Find the end of a step, or the point within it at which the load factor reaches 1."""
     if arc.end.load_factor < 1.0:
         return arc.end
     near = arc.zero(lambda point: point.load_factor - 1.0)
@@ -202,15 +202,15 @@ def _end(arc: Arc) -> ArcPoint:
 
 
 def _departure(traced: Trace, passed: list[Event], number: int) -> int | None:
-    """Index of the bifurcation to leave at among the events of a step.
+    """Index, among the events of a step, of the bifurcation at which to leave.
 
     Args:
         traced: the computed part of the curve.
         passed: events of the step.
-        number: of the bifurcation along the curve, counted from 1; 0 for none.
+        number: number of the bifurcation along the curve, counted from 1; 0 for none.
 
     Returns:
-        the index; None where that bifurcation does not lie in the step.
+        the index; None if that bifurcation is not in the step.
     """
     if not number:
         return None
@@ -237,7 +237,7 @@ def _leave(curve: Curve, traced: Trace, passed: list[Event], side: int) -> None:
 
 
 def _outcome(traced: Trace, step: float, *, bifurcation_missing: bool) -> PathOutcome | None:
-    """How the path ends at its last point; None where it goes on."""
+    """Outcome of the path at its last point; None if it goes on."""
     first = traced.points[0]
     last = traced.points[-1]
     if last.load_factor >= 1.0:
@@ -255,23 +255,23 @@ def _outcome(traced: Trace, step: float, *, bifurcation_missing: bool) -> PathOu
 
 
 DISTANCES = (0.02, 0.05, 0.01, 0.1, 0.002)
-"""Distances from the bifurcation at which the branch is looked for, one after the other."""
+"""Distances from the bifurcation at which the branch is sought, in order."""
 
 
 def switch(curve: Curve, bifurcation: ArcPoint, multiplicity: int, side: int = 1) -> ArcPoint | None:
-    """First point of the branch that crosses at a bifurcation, with its tangent away from it.
+    """Find the first point of the branch that crosses at a bifurcation, with its tangent away from it.
 
-    Of the two halves of the branch side 1 is the one on which the largest strain coordinate of the null vector grows,
-    side −1 the other. Where symmetry makes a whole circle of branches, the one nearest to the first such coordinate.
+    On side 1 of the branch the largest strain coordinate of the null vector grows; side −1 is the other half. If
+    symmetry makes a whole circle of branches, the one nearest to the first such coordinate is taken.
 
     Args:
         curve: the curve.
-        bifurcation: where to leave it.
-        multiplicity: branches that cross, the dimension of the null space across the curve.
-        side: which half, 1 or −1.
+        bifurcation: point at which to leave it.
+        multiplicity: dimension of the null space across the curve.
+        side: half of the branch, 1 or −1.
 
     Returns:
-        the point; None where none of the distances leads to one.
+        the point; None if no distance leads to one.
     """
     derivative = curve.derivative(bifurcation.y)
     direction = side * crossing_direction(derivative, bifurcation.tangent, multiplicity)
@@ -290,7 +290,7 @@ def switch(curve: Curve, bifurcation: ArcPoint, multiplicity: int, side: int = 1
 
 
 def crossing_direction(derivative: FloatArray, tangent: FloatArray, multiplicity: int) -> FloatArray:
-    """Direction of the null space of ∂g/∂y across the tangent, nearest to the largest unknown in it.
+    """Choose the direction in the null space of ∂g/∂y across the tangent that is nearest to its largest unknown.
 
     Args:
         derivative: ∂g/∂y, shape (n, n + 1).
@@ -298,7 +298,7 @@ def crossing_direction(derivative: FloatArray, tangent: FloatArray, multiplicity
         multiplicity: dimension of the null space across the tangent.
 
     Returns:
-        unit vector, shape (n + 1,), in which that unknown grows.
+        the unit vector, shape (n + 1,), along which that unknown grows.
     """
     bordered = np.vstack([derivative, tangent])
     _, _, rows = np.linalg.svd(bordered)

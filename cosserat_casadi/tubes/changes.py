@@ -1,8 +1,8 @@
-"""Functions with the changes of their results, and steps along a robot with the changes of its state.
+"""Functions with derivatives of their results, and steps along a robot with derivatives of its state.
 
 A robot changes with its unknowns, with the translations of its tubes, which move the ends of its pieces, with its
-loads, and with its parameters. Steps are taken once for all of these directions: what does not depend on the direction
-is computed once.
+loads, and with its parameters. Steps are taken once for all of these directions: quantities that do not depend on the
+direction are computed once.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class Directions:
 
     @cached_property
     def _moving(self) -> list[int]:
-        """Inputs that are no rotations: rotations have an effect at the drives alone."""
+        """Indices of the inputs except rotations, which act at the drives alone."""
         size = self.robot.size
         return [*range(1, 2 * size, 2), *range(2 * size, self.robot.inputs.size)]
 
@@ -71,23 +71,23 @@ class Directions:
 
     @property
     def of_given(self) -> list[ca.DM]:
-        """Changes of the inputs, then of the parameters where there are any."""
+        """Changes of the inputs, then of the parameters if there are any."""
         if not self.robot.parameters.size:
             return [self.of_inputs]
         return [self.of_inputs, self._among(ca.DM.eye(self.robot.parameters.size), self.parameters)]
 
     def _among(self, columns: ca.DM, place: slice) -> ca.DM:
-        """Columns of some directions at their place among columns of all directions."""
+        """Place the columns of some directions among the columns of all directions."""
         among = ca.DM(columns.size1(), self.count)
         among[:, place] = columns
         return among
 
     def by_inputs(self, changes: Matrix, by_rotations: Matrix) -> Matrix:
-        """Derivatives with all inputs in their order.
+        """Arrange derivatives by all inputs in their order.
 
         Args:
             changes: a column for each direction.
-            by_rotations: derivatives with the rotations, a column for each tube.
+            by_rotations: derivatives by the rotations, a column for each tube.
         """
         size = self.robot.size
         columns = [changes[:, self.unknowns + index] for index in range(len(self._moving))]
@@ -98,13 +98,13 @@ class Directions:
 
 
 def with_changes(function: ca.Function, directions: Directions, fixed: Mapping[int, ca.DM]) -> ca.Function:
-    """(arguments, changes of some) ↦ (results, their changes): a function and its derivatives in all directions.
+    """Make (arguments, changes of some) ↦ (results, their changes): a function with derivatives in all directions.
 
     Args:
-        function: of column vectors, with results that are columns.
-        directions: in which it changes.
-        fixed: changes of arguments by index that are always the same, a column for each direction. Changes of the other
-            arguments are arguments behind these, in their order.
+        function: function of column vectors, with results that are columns.
+        directions: directions of the changes.
+        fixed: constant changes of arguments by index, a column for each direction. Changes of the other arguments are
+            appended to the arguments, in their order.
     """
     symbols = [ca.SX.sym(function.name_in(index), function.size1_in(index)) for index in range(function.n_in())]
     changes: list[Matrix] = []
@@ -123,11 +123,11 @@ def with_changes(function: ca.Function, directions: Directions, fixed: Mapping[i
 
 
 def changing_step(staged: Staged, directions: Directions) -> ca.Function:
-    """(stacked, lengths, section) ↦ stacked: a step of the state and its changes.
+    """Make (stacked, lengths, section) ↦ stacked: a step of the state and its changes.
 
-    Stacked are the state, the carried numbers, and the changes of both column after column. The lengths are the length
-    of the step and its derivatives in the directions that stretch it; the section is without the carried numbers, and
-    behind it are its changes with the parameters, column after column.
+    The stacked vector consists of the state, the carried numbers, and the changes of both by columns. The lengths are
+    the length of the step and its derivatives in the directions that stretch it. The section is without the carried
+    numbers, and is followed by its changes with the parameters, by columns.
     """
     stacked = ca.SX.sym("stacked", staged.width_with_carried * (1 + directions.count))
     before, length = (ca.SX.sym(name, 1 + len(directions.stretching)) for name in ("before", "length"))
@@ -150,7 +150,7 @@ def _changed(
     lengths: list[ca.SX],
     section: ca.SX,
 ) -> Matrix:
-    """The state and its changes after a stage; arguments as for :func:`changing_step`."""
+    """Take a stage of the state and its changes; arguments as for :func:`changing_step`."""
     width = staged.width_with_carried
     state = stacked[: staged.width]
     carried = stacked[staged.width : width]

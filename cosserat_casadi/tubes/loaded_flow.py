@@ -1,16 +1,16 @@
-"""One step along a robot that bears loads, by flows that are exact.
+"""One step along a robot under loads, composed of exact flows.
 
-A load leaves a force n and a moment m in a section. With the sum w = Σ EIᵢ κᵢ e(αᵢ) over the tubes and their stiffness
-B = Σ EIᵢ the centre line is curved by c = (q + w)/B, where q = (m_y, −m_x) is the moment in the axes of the frame that
-does not turn about it, as the direction that it bends towards (D. C. Rucker, B. A. Jones, R. J. Webster, IEEE Trans.
-Robot. 26 (2010) 769). These are Hamilton's equations of
+A load causes a force n and a moment m in a section. With the sum w = Σ EIᵢ κᵢ e(αᵢ) over the tubes and their stiffness
+B = Σ EIᵢ the centre line has the curvature c = (q + w)/B, where q = (m_y, −m_x) is the moment in the axes of the frame
+that does not turn about it, as the direction of bending (D. C. Rucker, B. A. Jones, R. J. Webster, IEEE Trans. Robot.
+26 (2010) 769). These are Hamilton's equations of
 
     H = Σ τᵢ²/(2 GJᵢ) + |q|²/(2 B) + q·w(α)/B + |w(α)|²/(2 B) + n·t,    with the tangent t.
 
-Each of its parts alone is solved in closed form. The torques turn the tubes. The moment turns the frame about itself,
-and back about the tangent. The pre-curvature turns the frame about a fixed axis, and changes the torques. The tangent
-moves the position, and changes the moment by the lever of n. Their symmetric product is a step of order two that is
-symplectic and keeps rotations; `tubes.stages` makes one of order eight of it. See docs/tubes.md.
+Each of its parts alone is solved in closed form. The torques rotate the tubes. The moment rotates the frame about its
+axis, and back about the tangent. The pre-curvature rotates the frame about a fixed axis, and changes the torques. The
+tangent moves the position, and changes the moment by the lever arm of n. Their symmetric product is a symplectic step
+of order two that preserves rotations; `tubes.stages` composes a step of order eight from it. See docs/tubes.md.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ TANGENT = ca.DM([0, 0, 1])
 
 @dataclass(frozen=True)
 class LoadedState(FlowState):
-    """State that is integrated along a robot that bears loads; its pose is in world axes, from the tip's position on.
+    """State that is integrated along a robot under loads; its pose is in world axes, relative to the tip's position.
 
     Attributes:
-        moment: in the section, world axes, 3×1, N m.
+        moment: moment in the section, world axes, 3×1, N m.
         place: distance from the plate along the centre line, 1×1, m.
     """
 
@@ -52,7 +52,7 @@ class LoadedState(FlowState):
 
     @classmethod
     def of(cls, stacked: Matrix) -> Self:
-        """The state of stacked entries."""
+        """Make a state from stacked entries."""
         size = (stacked.size1() - 12) // 2
         cuts = [0, size, 2 * size]
         for width in (3, 4, 1, 3, 1):
@@ -63,11 +63,11 @@ class LoadedState(FlowState):
 
 @dataclass(frozen=True)
 class LoadedSection(Bending):
-    """Constants of a piece of a robot that bears loads.
+    """Constants of a piece of a robot under loads.
 
     Attributes:
-        force: what the force in a section would be at the plate, world axes, 3×1, N.
-        weight: force per length, world axes, 3×1, N/m; None in a robot without weight.
+        force: force in a section, extrapolated to the plate, world axes, 3×1, N.
+        weight: force per length, world axes, 3×1, N/m; None for a robot without weight.
         potential: whether the work of the loads counts in the energy.
     """
 
@@ -82,7 +82,7 @@ class LoadedSection(Bending):
         return self.force - place * self.weight
 
     def moved(self, state: LoadedState, length: Matrix) -> LoadedState:
-        """Along a length the torques turn the tubes, and the tangent moves the position and the lever of the force."""
+        """Flow along a length in which the torques rotate the tubes, and the tangent moves position and lever arm."""
         rates = state.torques / self.torsion
         energy = state.energy + length * ca.dot(state.torques, rates) / 2
         way = length * rotate(state.pose.quaternion, TANGENT)
@@ -99,7 +99,7 @@ class LoadedSection(Bending):
         )
 
     def loaded(self, state: LoadedState, length: Matrix) -> LoadedState:
-        """Along a length the moment turns the frame."""
+        """Flow along a length in which the moment rotates the frame."""
         back = quaternion_conjugate(state.pose.quaternion)
         moment = rotate(back, state.moment)
         share = length / self.bending
@@ -113,7 +113,7 @@ class LoadedSection(Bending):
         return replace(state, pose=Pose(state.pose.position, quaternion), energy=energy)
 
     def bent(self, state: LoadedState, length: Matrix) -> LoadedState:
-        """Along a length the pre-curvature turns the frame, and the torques change."""
+        """Flow along a length in which the pre-curvature rotates the frame, and the torques change."""
         cosines, sines, x, y = self.resting(state.angles)
         # To bend towards x is to turn about y, towards y is to turn back about x.
         arc = increment(length * ca.vertcat(-y, x, 0))
@@ -127,12 +127,12 @@ class LoadedSection(Bending):
         return replace(state, torques=torques, pose=Pose(state.pose.position, quaternion), energy=energy)
 
     def stage(self, state: LoadedState, before: Matrix, length: Matrix) -> LoadedState:
-        """A stage of a step along a length, without the last half of what the moment does: the next stage takes it.
+        """Stage of a step along a length, without the last half of the moment's flow, which the next stage includes.
 
         Args:
-            state: where it begins.
+            state: state at the start.
             before: length of the stage before.
-            length: of this one.
+            length: length of this stage.
         """
         state = self.loaded(state, (before + length) / 2)
         state = self.moved(state, length / 2)
@@ -142,10 +142,10 @@ class LoadedSection(Bending):
 
 @cache
 def loaded_step(size: int, *, spread: bool, potential: bool) -> ca.Function:
-    """(state, length, section) ↦ state: one step of a number of tubes that bear loads.
+    """Make (state, length, section) ↦ state: one step of a number of tubes under loads.
 
-    The section is stacked: torsion of every tube, moments of every tube, bending, own energy, force and, where the
-    loads are spread, force per length.
+    The section is a vector of the torsion of every tube, moments of every tube, bending, own energy, force and, for
+    distributed loads, force per length.
 
     Args:
         size: number of tubes.
@@ -158,7 +158,7 @@ def loaded_step(size: int, *, spread: bool, potential: bool) -> ca.Function:
 
 @cache
 def loaded_stages(size: int, *, spread: bool, potential: bool) -> Staged:
-    """A step of a number of tubes that bear loads, in its stages; it has the arguments of `loaded_step`."""
+    """Make a step of a number of tubes under loads, in its stages, with the arguments of `loaded_step`."""
     state = ca.SX.sym("state", 2 * size + 12)
     before = ca.SX.sym("before")
     length = ca.SX.sym("length")
@@ -174,12 +174,12 @@ def loaded_stages(size: int, *, spread: bool, potential: bool) -> Staged:
 
 
 def section_width(size: int, *, spread: bool) -> int:
-    """Entries of a stacked section of a number of tubes."""
+    """Number of entries of a stacked section for a number of tubes."""
     return 2 * size + (8 if spread else 5)
 
 
 def section_of(stacked: Matrix, size: int, *, spread: bool, potential: bool) -> LoadedSection:
-    """The section of stacked entries: see `loaded_step`."""
+    """Make a section from stacked entries: see `loaded_step`."""
     cuts = [0, size, 2 * size, 2 * size + 1, 2 * size + 2, 2 * size + 5]
     if spread:
         cuts.append(2 * size + 8)

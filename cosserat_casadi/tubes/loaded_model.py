@@ -1,7 +1,7 @@
-"""The model of concentric tubes that bear loads: named CasADi functions of their tips and of the inputs.
+"""The model of concentric tubes under loads: named CasADi functions of the unknowns at their tips and of the inputs.
 
-The frame at the tip of the robot is unknown beside the angles there: loads keep their direction in the world, and the
-frame at the base plate must be the world's. See docs/tubes.md.
+The frame at the tip of the robot is unknown in addition to the angles there: loads keep their direction in the world,
+and the frame at the base plate must coincide with that of the world. See docs/tubes.md.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from cosserat_casadi.tubes.tube_model import TubeModel
 from cosserat_casadi.tubes.variations import TipVariations, of_loaded
 
 FRAME = 4
-"""Unknowns of the frame at the tip, a quaternion, and its equations."""
+"""Number of unknowns of the frame at the tip, a quaternion, and of its equations."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class _Forces:
     """Sums of the loads that act farther out, in world axes.
 
     Attributes:
-        force: the force in a section, as it would be at the plate, 3×1, N.
+        force: the force in a section, extrapolated to the plate, 3×1, N.
         weight: force per length, 3×1, N/m.
     """
 
@@ -42,45 +42,45 @@ class _Forces:
 
 
 class LoadedTubeModel(TubeFunctions):
-    """A robot of concentric tubes that bear loads.
+    """A robot of concentric tubes under loads.
 
-    Unknown are the angles at the tips of the tubes (n), and the quaternion of the frame at the tip of the robot in
-    world axes (4). The residual holds the angles at the drives less the rotations of the inputs (n), by how much the
-    square of the quaternion's norm is off, halved (1), and the vector of the quaternion of the frame at the plate (3).
+    The unknowns are the angles at the tips of the tubes (n), and the quaternion of the frame at the tip of the robot in
+    world axes (4). The residual consists of the angles at the drives less the rotations of the inputs (n), half of the
+    squared norm of the quaternion less one (1), and the vector part of the quaternion of the frame at the plate (3).
     """
 
     @property
     def size(self) -> int:
-        """Number of unknowns: one a tube, and four of the frame at the tip."""
+        """Number of unknowns: one for each tube, and four for the frame at the tip."""
         return self.tube_count + FRAME
 
     @cached_property
     def without_loads(self) -> TubeModel:
-        """The model of these tubes with as many steps, without loads; inputs of the loads have no effect."""
+        """Make the model of these tubes without loads, with equal steps; inputs of the loads have no effect."""
         return TubeModel(self.robot, self.steps)
 
     def begin(self, angles: FloatArray, inputs: FloatArray) -> FloatArray:
-        """The unknowns of a robot without loads, shape (n + 4,).
+        """Make the unknowns of a robot without loads, shape (n + 4,).
 
         Args:
-            angles: at the tips, shape (n,), rad.
-            inputs: of the robot.
+            angles: angles at the tips, shape (n,), rad.
+            inputs: inputs of the robot.
         """
         _, _, quaternion, _, _ = self.without_loads.stations(angles, inputs)
         return np.concatenate([angles, quaternion.full()[:, -1]])
 
     def varied(self, x: FloatArray, inputs: FloatArray) -> TipVariations:
-        """How the tubes and the tangent turn along the robot; all loads have an energy."""
+        """Variations of the tubes and the tangent along the robot, for loads that have an energy."""
         stations, along, of_steps = self.variations(x, inputs)
         return of_loaded(self.tube_count, stations.full(), along.full(), of_steps.full())
 
     @cached_property
     def variations(self) -> ca.Function:
-        """(x, inputs) ↦ stations and how they change, of loads that have an energy.
+        """(x, inputs) ↦ stations and their changes, for loads that have an energy.
 
-        Stacked states at the ends of all steps from the tip to the plate, (2 n + 12)×k; their changes, stacked as those
-        of `LoadedTangent`, with the angles at the tips and a turn of the frame there, (2 n + 9)×((n + 3) k); and, for
-        each step, those at its end with the torques and the moment at its start, (2 n + 9)×((n + 3) (k − 1)).
+        The results are stacked states at the ends of all steps from the tip to the plate, (2 n + 12)×k; their changes,
+        stacked as in `LoadedTangent`, by the angles at the tips and a rotation of the frame, (2 n + 9)×((n + 3) k);
+        and, for each step, changes at its end by torques and moment at its start, (2 n + 9)×((n + 3) (k − 1)).
         """
         stations = self._varied.stations
         width = self._width
@@ -111,7 +111,7 @@ class LoadedTubeModel(TubeFunctions):
 
     @cached_property
     def _whole(self) -> March:
-        """Take the steps of all pieces from the tip on, and pick up the loads on the way."""
+        """Take the steps of all pieces from the tip on, adding the loads on the way."""
         forces = _Forces(ca.MX.zeros(3), ca.MX.zeros(3))
 
         def entered(piece: int, end: Matrix, sections: Matrix) -> tuple[Matrix, Matrix]:
@@ -124,7 +124,7 @@ class LoadedTubeModel(TubeFunctions):
 
     @property
     def _tip(self) -> LoadedState:
-        """The state at the tip, which bears nothing yet."""
+        """The state at the tip, without loads."""
         x, _, _ = self._arguments
         angles, quaternion = ca.vertsplit(x, [0, self.tube_count, self.size])
         zeros = ca.DM.zeros(3)
@@ -139,9 +139,9 @@ class LoadedTubeModel(TubeFunctions):
         )
 
     def _borne(self, piece: int) -> Iterator[tuple[TubeLoad, ca.MX, int]]:
-        """The loads that act at the start of a piece, in their own axes, and the tube that bears them.
+        """Loads that act at the start of a piece, in their axes, and the tube that bears them.
 
-        A load that acts elsewhere is zero: which tubes end there is decided as the function is evaluated.
+        A load that acts elsewhere is zero; the evaluation of the function decides which tubes end there.
         """
         _, inputs, _ = self._arguments
         for index, rank in enumerate(self._ranks):
@@ -169,12 +169,12 @@ class LoadedTubeModel(TubeFunctions):
 
     @cached_property
     def _point_ranks(self) -> dict[int, ca.MX]:
-        """Index, among the sorted places, of the place where each load beside the tips acts, by the load's number."""
+        """Index among the sorted places of each load that acts beside a tip, by the load's index."""
         first = 2 * self.tube_count
         return {number: self._rank(first + index) for index, number in enumerate(self._point_loads)}
 
     def _picked_up(self, piece: int, state: LoadedState, forces: _Forces) -> tuple[LoadedState, _Forces]:
-        """Forces beyond the start of a piece, where tubes may end and their loads are added."""
+        """State and forces after the start of a piece, where tubes may end and their loads are added."""
         for load, borne, index in self._borne(piece):
             tip, _ = self._ends[index]
             state, forces = _with_load(load, borne, index, tip, state, forces)
@@ -184,18 +184,18 @@ class LoadedTubeModel(TubeFunctions):
 
     @property
     def _width(self) -> int:
-        """Entries of a stacked state."""
+        """Number of entries of a stacked state."""
         return 2 * self.tube_count + 12
 
     @property
     def _tangent_step(self) -> ca.Function:
-        """A step of the state and its changes with the angles at the tips and a turn of the frame there."""
+        """Step of the state and its changes by the angles at the tips and a rotation of the frame there."""
         follower = any(load.follower and not load.is_moment for load in self.robot.loads)
         return tangent_step(self.tube_count, self.tube_count + VECTOR, spread=self._spread, follower=follower)
 
     @cached_property
     def _varied(self) -> March:
-        """States without the energy of loads, each with its changes behind it, column after column."""
+        """States without the energy of loads, each followed by its changes, by columns."""
         height = 2 * self.tube_count + 3 * VECTOR
         at_tip = np.zeros((height, self.tube_count + VECTOR))
         at_tip[: self.tube_count, : self.tube_count] = np.eye(self.tube_count)
@@ -218,7 +218,7 @@ class LoadedTubeModel(TubeFunctions):
 
     @cached_property
     def _jacobian(self) -> Matrix:
-        """Derivative of the residual with x, from the changes at the plate, (n + 4)×(n + 4)."""
+        """Derivative of the residual by x, from the changes at the plate, (n + 4)×(n + 4)."""
         x, _, _ = self._arguments
         end = self._varied.ends[-1]
         quaternion = LoadedState.of(end[: self._width]).pose.quaternion
@@ -269,15 +269,15 @@ class LoadedTubeModel(TubeFunctions):
 def _with_load(
     load: TubeLoad, value: ca.MX, tube: int, tip: ca.MX, state: LoadedState, forces: _Forces
 ) -> tuple[LoadedState, _Forces]:
-    """The state at a tube's tip, and the forces, with one load added.
+    """Add one load to the state at a tube's tip and to the forces.
 
     Args:
         load: the load.
-        value: its force or moment at the tip, or per length, in its own axes, 3×1; zero where the tube does not end.
+        value: its force or moment at the tip, or per length, in its axes, 3×1; zero if the tube does not end there.
         tube: index of the tube.
-        tip: how far the tip stands out of the plate, 1×1, m.
-        state: there.
-        forces: of what acts farther out.
+        tip: distance of the tip from the plate, 1×1, m.
+        state: state there.
+        forces: forces of loads farther out.
     """
     if load.spread:
         return state, _Forces(forces.force + tip * value, forces.weight + value)
@@ -291,7 +291,7 @@ def _with_load(
 
 
 def _in_world(load: TubeLoad, value: ca.MX, tube: int, state: LoadedState) -> Matrix:
-    """A force or moment at a tube's tip in world axes, 3×1; a follower's value is turned there from the tube's axes."""
+    """Force or moment at a tube's tip in world axes, 3×1; a follower load is rotated from the tube's axes."""
     if not load.follower:
         return value
     half = state.angles[tube] / 2

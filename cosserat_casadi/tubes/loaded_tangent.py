@@ -1,7 +1,7 @@
-"""How a step along a loaded robot changes with the state that it begins at: the derivatives of `loaded_flow`, by hand.
+"""Derivatives of a step along a loaded robot by its initial state, written by hand for `loaded_flow`.
 
-A change of the frame is a small turn θ in world axes, δR = θ^ R, and those of all else are plain. Each flow is then a
-few products of matrices, with less than half the operations that its code has when it is differentiated.
+A change of the frame is a small rotation θ in world axes, δR = θ^ R; all other changes are ordinary. Each flow then
+consists of a few products of matrices, with less than half the operations of automatic differentiation.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ class LoadedTangent:
     """Changes of a state in m directions.
 
     Attributes:
-        angles: of the tubes against the frame, n×m, rad.
-        torques: in the tubes, n×m, N m.
-        turn: of the frame, world axes, 3×m, rad.
-        moment: in the section, world axes, 3×m, N m.
-        force: in the section, world axes, 3×m, N; zero where no force follows its tube.
+        angles: changes of the angles of the tubes against the frame, n×m, rad.
+        torques: changes of the torques in the tubes, n×m, N m.
+        turn: rotations of the frame, world axes, 3×m, rad.
+        moment: changes of the moment in the section, world axes, 3×m, N m.
+        force: changes of the force in the section, world axes, 3×m, N; zero without follower forces.
     """
 
     angles: Matrix
@@ -46,7 +46,7 @@ class LoadedTangent:
 
     @classmethod
     def of(cls, stacked: Matrix) -> LoadedTangent:
-        """The changes of stacked entries."""
+        """Make changes from stacked entries."""
         size = (stacked.size1() - 3 * VECTOR) // 2
         cuts = [0, size, 2 * size]
         for _ in range(3):
@@ -54,7 +54,7 @@ class LoadedTangent:
         return cls(*ca.vertsplit(stacked, cuts))
 
     def moved(self, section: LoadedSection, state: LoadedState, length: Matrix) -> LoadedTangent:
-        """Along a length, from a state, on which the torques turn the tubes and the tangent moves the lever."""
+        """Changes after a length in which the torques rotate the tubes and the tangent moves the lever arm."""
         tangent = rotate(state.pose.quaternion, TANGENT)
         way = -length * hat(tangent) @ self.turn
         by_force = length * hat(tangent) @ self.force
@@ -66,7 +66,7 @@ class LoadedTangent:
         )
 
     def loaded(self, section: LoadedSection, state: LoadedState, length: Matrix) -> LoadedTangent:
-        """Along a length, from a state, on which the moment turns the frame."""
+        """Changes after a length in which the moment rotates the frame."""
         share = length / section.bending
         arc = increment(share * state.moment)
         turned = quaternion_to_matrix(arc.quaternion)
@@ -77,7 +77,7 @@ class LoadedTangent:
         return replace(self, turn=turned @ self.turn + by_moment)
 
     def bent(self, section: LoadedSection, state: LoadedState, length: Matrix) -> LoadedTangent:
-        """Along a length, from a state, on which the pre-curvature turns the frame and changes the torques."""
+        """Changes after a length in which the pre-curvature rotates the frame and changes the torques."""
         bending = section.bending
         cosines, sines, x, y = section.resting(state.angles)
         change_x = -sines.T @ self.angles / bending
@@ -98,11 +98,11 @@ class LoadedTangent:
         return replace(self, torques=self.torques + length * gained, turn=self.turn + frame @ change_of_arc)
 
     def picked_up(self, load: TubeLoad, value: Matrix, tube: int, state: LoadedState) -> LoadedTangent:
-        """The changes beyond a tube's tip, where it takes up a load.
+        """Changes beyond a tube's tip, at which a load acts.
 
         Args:
             load: the load.
-            value: its force or moment, world axes, 3×1; zero where the tube does not end.
+            value: its force or moment, world axes, 3×1; zero if the tube does not end there.
             tube: index of the tube.
             state: the state at the tip.
         """
@@ -120,21 +120,21 @@ class LoadedTangent:
 
 
 def _rows_times(factors: Matrix, rows: Matrix) -> Matrix:
-    """Each row times a factor."""
+    """Multiply each row by a factor."""
     return ca.repmat(factors, 1, rows.size2()) * rows
 
 
 @cache
 def tangent_step(size: int, directions: int, *, spread: bool, follower: bool) -> ca.Function:
-    """(state and changes, length, section) ↦ state and changes: a step of a number of tubes that bear loads.
+    """Make (state and changes, length, section) ↦ state and changes: a step of a number of tubes under loads.
 
-    Stacked are the state, (2 n + 12)×1, whose energy leaves out the loads, and the changes column after column.
+    The stacked vector consists of the state, (2 n + 12)×1, with an energy without loads, and the changes by columns.
 
     Args:
         size: number of tubes.
         directions: number m of changes.
         spread: whether there are forces per length.
-        follower: whether there are forces that follow their tubes.
+        follower: whether there are follower forces.
     """
     width = 2 * size + 12
     height = 2 * size + 3 * VECTOR

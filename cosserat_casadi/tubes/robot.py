@@ -1,4 +1,4 @@
-"""The tubes of a scene and their loads as numbers, and the vector of their inputs."""
+"""The tubes and loads of a scene as numbers, and the vector of their inputs."""
 
 from __future__ import annotations
 
@@ -27,23 +27,23 @@ Inputs = TypeVar("Inputs", FloatArray, ca.MX)
 Entries = TypeVar("Entries", FloatArray, Numbers)
 
 Values = Mapping[str, npt.ArrayLike] | npt.ArrayLike | None
-"""Inputs by name, all in order, or None for the inputs of the scene."""
+"""Inputs by name, or all inputs in order, or None for the inputs of the scene."""
 
 SLACK = 1e-12
-"""Distance, over a length, by which a translation may leave its range: what rounding does to it."""
+"""Distance, over a length, by which a translation may leave its range, as rounding."""
 
 
 @dataclass(frozen=True)
 class TubeNumbers(Generic[Entries]):
-    """Numbers of tubes, one entry a tube in the order of the scene: known, or expressions of parameters.
+    """Numbers of tubes, with an entry for each tube in the order of the scene: values, or expressions of parameters.
 
     Attributes:
-        bending: EI, shape (n,), N m².
-        torsion: GJ, shape (n,), N m².
-        curvature: of the curved part of the unloaded tube, shape (n,), 1/m.
+        bending: bending stiffness EI, shape (n,), N m².
+        torsion: torsional stiffness GJ, shape (n,), N m².
+        curvature: curvature of the curved part of the unloaded tube, shape (n,), 1/m.
         straight: length of the straight part, shape (n,), m.
-        curved: length of the curved part behind it, shape (n,), m.
-        loads: what acts on the tubes, m inputs of three numbers.
+        curved: length of the curved part beyond it, shape (n,), m.
+        loads: loads on the tubes, m inputs of three numbers.
     """
 
     bending: Entries
@@ -61,11 +61,11 @@ class TubeNumbers(Generic[Entries]):
 
 @dataclass(frozen=True)
 class Robot(TubeNumbers[FloatArray]):
-    """Tubes as arrays with one entry a tube, in the order of the scene; parameters have the scene's values.
+    """Tubes as arrays with an entry for each tube, in the order of the scene; parameters have the scene's values.
 
     Attributes:
-        scene: where the tubes are from.
-        names: of the tubes.
+        scene: scene of the tubes.
+        names: names of the tubes.
         layout: the inputs: rotation and translation of each tube, then the loads, 2 n + 3 m numbers.
         parameters: numbers that are arguments of the model's functions; often none.
     """
@@ -77,7 +77,7 @@ class Robot(TubeNumbers[FloatArray]):
 
     @cached_property
     def numbers(self) -> TubeNumbers[Numbers]:
-        """The numbers of the tubes, expressions where parameters change them."""
+        """The numbers of the tubes, as expressions if they depend on parameters."""
         return tube_numbers(self.parameters.written(self.scene, self.parameters.symbol))
 
     @cached_property
@@ -92,7 +92,7 @@ class Robot(TubeNumbers[FloatArray]):
 
     @property
     def tolerance(self) -> float:
-        """Wanted pose error of the tips, distances relative to the length that stands out."""
+        """Wanted pose error of the tips, with distances relative to the protruding length."""
         return self.scene.accuracy.tolerance
 
     @property
@@ -102,7 +102,7 @@ class Robot(TubeNumbers[FloatArray]):
 
     @property
     def has_energy(self) -> bool:
-        """Whether all loads have an energy, so that stability has a meaning; they have where there are none."""
+        """Whether all loads have an energy, so that stability has a meaning; true without loads."""
         return all(load.has_energy for load in self.loads)
 
     def rotations(self, inputs: Inputs) -> Inputs:
@@ -114,7 +114,7 @@ class Robot(TubeNumbers[FloatArray]):
         return inputs[1 : 2 * self.size : 2]
 
     def load_start(self, index: int) -> int:
-        """Where the numbers of a load begin in the inputs."""
+        """Index of the first number of a load in the inputs."""
         return int(self.layout.slices[self.loads[index].name].start)
 
     def without_loads(self, inputs: FloatArray) -> FloatArray:
@@ -124,7 +124,7 @@ class Robot(TubeNumbers[FloatArray]):
         return unloaded
 
     def input_index(self, name: str) -> int:
-        """Place of an input in the inputs.
+        """Index of an input in the inputs.
 
         Raises:
             SceneError: there is no such input.
@@ -134,14 +134,14 @@ class Robot(TubeNumbers[FloatArray]):
         return self.columns[name]
 
     def packed(self, values: Values = None) -> FloatArray:
-        """The inputs, shape (2 n + 3 m,).
+        """Stack the inputs, shape (2 n + 3 m,).
 
         Args:
-            values: inputs by name, where inputs not named keep the scene's value, and a load may be named whole, such
+            values: inputs by name, with the scene's values for the others, where a load may be named as a whole, such
                 as "push.force"; or all inputs in order; None for the inputs of the scene.
 
         Raises:
-            SceneError: with every input that is unknown, no finite number, or out of its range.
+            SceneError: inputs are unknown, not finite, or out of their ranges; the error lists all of them.
         """
         if values is None:
             return self.inputs.copy()
@@ -186,7 +186,7 @@ class Robot(TubeNumbers[FloatArray]):
 
 
 def robot_of(scene: scenes.Scene) -> Robot:
-    """The tubes of a scene, all of whose numbers are constants.
+    """Make the tubes of a scene with constant numbers.
 
     Raises:
         SceneError: the scene has no tubes.
@@ -208,7 +208,7 @@ def robot_of(scene: scenes.Scene) -> Robot:
 
 
 def parametric_robot(scene: scenes.Scene) -> Robot:
-    """The tubes of a scene whose parameters are arguments of the model's functions.
+    """Make the tubes of a scene whose parameters are arguments of the model's functions.
 
     Raises:
         SceneError: the scene has no tubes.
@@ -219,7 +219,7 @@ def parametric_robot(scene: scenes.Scene) -> Robot:
 
 
 def tube_numbers(scene: scenes.Scene) -> TubeNumbers[Numbers]:
-    """The numbers of the tubes of a scene, some of which may be expressions of parameters."""
+    """Collect the numbers of the tubes of a scene, some of which may be expressions of parameters."""
     stiffness = [_stiffness(tube) for tube in scene.tubes]
     return TubeNumbers(
         bending=as_vector([bending for bending, _ in stiffness]),

@@ -28,7 +28,7 @@ _FIRST_HALF = (
 _MIDDLE = -0.79688793935291635401978884
 
 SHARES = (*_FIRST_HALF, _MIDDLE, *reversed(_FIRST_HALF))
-"""Shares γ of a step that its stages take; some go back. They add up to one."""
+"""Shares γ of a step by its stages, some of them negative; their sum is one."""
 
 
 @dataclass(frozen=True)
@@ -37,9 +37,9 @@ class March:
 
     Attributes:
         ends: stacked states at the ends of the pieces.
-        stations: stacked states at all ends of steps from the tip to the plate, a column each.
-        starts: stacked states that the steps begin with, beyond the loads that act there, a column each.
-        sections: stacked sections of the steps, with the loads, a column each.
+        stations: stacked states at all ends of steps from the tip to the plate, as columns.
+        starts: stacked states at the starts of the steps, after the loads that act there, as columns.
+        sections: stacked sections of the steps, with the loads, as columns.
     """
 
     ends: list[Matrix]
@@ -54,7 +54,7 @@ class Staged:
 
     Attributes:
         stage: (state, length of the stage before, length, section) ↦ state.
-        last: (state, length of the last stage, section) ↦ state: what the last stage leaves to the next.
+        last: (state, length of the last stage, section) ↦ state: the remainder of the last stage.
         energy: index of the energy in the state.
         carried: entries at the end of the section that change with the robot: force, and force per length.
     """
@@ -66,23 +66,23 @@ class Staged:
 
     @property
     def width(self) -> int:
-        """Entries of the state."""
+        """Number of entries of the state."""
         return int(self.stage.size1_in(0))
 
     @property
     def width_with_carried(self) -> int:
-        """Number of entries of the state with the carried numbers behind it."""
+        """Number of entries of the state and the carried numbers."""
         return self.width + self.carried
 
 
 def composed(name: str, stage: ca.Function, last: ca.Function) -> ca.Function:
-    """(state, length, section) ↦ state: a step of order eight, in which one stage is written once and serves all.
+    """Make (state, length, section) ↦ state: a step of order eight, with one function for all stages.
 
     Args:
-        name: of the function.
-        stage: (state, length of the stage before, length, section) ↦ state, as `LoadedSection.stage`; with the lengths
-            may come what changes in proportion to them.
-        last: (state, length of the last stage, section) ↦ state: what the last stage leaves to the next.
+        name: name of the function.
+        stage: (state, length of the stage before, length, section) ↦ state, as `LoadedSection.stage`; quantities
+            proportional to the lengths may accompany these.
+        last: (state, length of the last stage, section) ↦ state: the remainder of the last stage.
     """
     whole = ca.MX.sym("length", stage.size1_in(2))
     start = ca.MX.sym("state", stage.size1_in(0))

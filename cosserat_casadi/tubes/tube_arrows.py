@@ -12,7 +12,7 @@ from cosserat_casadi.tubes.tube_loads import TubeLoad
 from cosserat_casadi.tubes.tube_solution import TubeSolution
 
 ALONG = 8
-"""Arrows of a force per length on one tube."""
+"""Number of arrows of a force per length on one tube."""
 
 
 def load_arrows(solution: TubeSolution) -> list[Arrow]:
@@ -35,14 +35,14 @@ def borne_loads(robot: Robot) -> list[tuple[TubeLoad, int]]:
 
 
 def sort_of(load: TubeLoad) -> Sort:
-    """Kind of vector that the arrows of a load stand for."""
+    """Kind of vector that the arrows of a load represent."""
     if load.is_moment:
         return "moment"
     return "line" if load.spread else "point"
 
 
 def arrows_on(solution: TubeSolution, load: TubeLoad, tube: int) -> tuple[list[FloatArray], FloatArray]:
-    """Places of the arrows of one load on one tube, and their vector, world axes; none where the housing bears it."""
+    """Places of the arrows of one load on one tube, and their vector, world axes; none if the housing bears it."""
     robot = solution.robot
     vector = float(load.shares[tube]) * solution.inputs[robot.layout.slices[load.name]]
     if load.follower:
@@ -56,7 +56,7 @@ def arrows_on(solution: TubeSolution, load: TubeLoad, tube: int) -> tuple[list[F
 
 
 def _reach(solution: TubeSolution, load: TubeLoad, tube: int) -> float:
-    """Distance from the plate to where a load acts on a tube, or to where a spread one ends, m."""
+    """Distance from the plate to the point where a load acts on a tube, or a distributed one ends, m."""
     return float(solution.robot.translations(solution.inputs)[tube]) - float(load.from_tip)
 
 

@@ -1,13 +1,13 @@
 """All equilibria of concentric tubes at given inputs.
 
-The angles at the tips determine the robot, and a common turn of all of them turns it as a whole. There remain the
-n − 1 angles between the tips, on a torus, which the robot carries to the n − 1 angles between the drives. This map has
-the degree one, that of tubes that do not twist: at all inputs the signs of its determinant add up to one over
-all equilibria. A drive that is turned once round is where it was. So equilibria that are twisted by a full turn more
-count too: each point of the torus belongs to one of them.
+The angles at the tips determine the robot, and a common rotation of all of them rotates the whole robot. The remaining
+n − 1 angles between the tips, on a torus, are mapped to the n − 1 angles between the drives. This map has degree one,
+like that of tubes that do not twist: for all inputs the signs of its determinant sum to one over all equilibria. A
+drive that makes a full turn returns to its angle. So equilibria that are twisted by a further full turn count too: each
+point of the torus belongs to one of them.
 
-Of two tubes the map is a function of one angle, whose rises and falls are told apart by an adaptive scan. Of more tubes
-Newton's method starts from the points of finer and finer grids until a grid finds nothing new and the signs add up.
+For two tubes the map is a function of one angle, whose rises and falls an adaptive scan separates. For more tubes
+Newton's method starts from the points of ever finer grids until a grid finds nothing new and the signs sum to one.
 """
 
 from __future__ import annotations
@@ -42,41 +42,41 @@ from cosserat_casadi.tubes.tube_solve import (
 )
 
 MOST_TUBES = 4
-"""Tubes whose equilibria are looked for: starts of Newton's method grow as a power of their number."""
+"""Largest number of tubes for the search, as the starts of Newton's method grow exponentially with it."""
 
 PAIR = 2
 
 TURN = 2 * np.pi
 
 FIRST_ANGLE = 0.1234
-"""Where scans and grids begin, rad: no angle at which symmetric robots have an equilibrium."""
+"""Start of scans and grids, rad, at which no symmetric robot has an equilibrium."""
 
 FIRST_INTERVALS = 48
-"""Intervals of a turn that the scan of two tubes begins with."""
+"""Number of initial intervals of a full turn in the scan of two tubes."""
 
 AGREES = 0.01
-"""Angle, rad, by which the cubic through the ends of an interval may miss the drives in its middle."""
+"""Largest error, rad, of the cubic through the ends of an interval for the drives at its middle."""
 
 MOST_EVALUATIONS = 20_000
-"""Angles that the scan of two tubes looks at before it gives up."""
+"""Most angles at which the scan of two tubes evaluates before it gives up."""
 
 GRIDS = {3: (8, 16, 32), 4: (6, 9, 12)}
 """Points along each angle of the grids of starts, by the number of tubes."""
 
 SAME = 1e-6
-"""Angles at the tips, rad, that differ by less belong to one equilibrium."""
+"""Difference of angles at the tips, rad, up to which they belong to one equilibrium."""
 
 
 @dataclass(frozen=True, repr=False)
 class TubeEquilibria(Result):
-    """The equilibria of concentric tubes at the same inputs.
+    """The equilibria of concentric tubes at equal inputs.
 
     Attributes:
         robot: the tubes.
-        solutions: the equilibria, by their energy, the least first.
-        complete: whether the search ended as it should: it settled before its work ran out, all equilibria are within
-            tolerance, and the signs of their determinants add up to one. Two of opposite signs could still be missing.
-            Never so under loads, where the search starts from the equilibria without loads and follows them.
+        solutions: the equilibria, by increasing energy.
+        complete: whether the search ended properly: it settled within its budget, all equilibria are within tolerance,
+            and the signs of their determinants sum to one. Two of opposite signs could still be missing. It is always
+            false under loads, where the search follows the equilibria without loads.
     """
 
     robot: Robot
@@ -111,8 +111,8 @@ def all_equilibria(scene: scenes.Scene, values: Values = None) -> TubeEquilibria
 
     Args:
         scene: a scene with tubes.
-        values: inputs by name, such as "inner.rotation" or "push.force", where inputs left out keep the scene's value;
-            or all inputs, rotation and translation of each tube, rad and m, and the loads.
+        values: inputs by name, such as "inner.rotation" or "push.force", with the scene's values for the others; or all
+            inputs, rotation and translation of each tube, rad and m, and the loads.
 
     Raises:
         SceneError: the scene has no tubes or too many, or an input is unknown or out of its range.
@@ -140,21 +140,21 @@ def tubes_at_rest(
     progress: Progress | None = None,
     report: Report | None = None,
 ) -> TubeSolution:
-    """Equilibrium of a scene with tubes to its tolerance, or of a model with its steps.
+    """Solve for the equilibrium of a scene with tubes to its tolerance, or of a model with its steps.
 
     Args:
         subject: the scene or the model.
-        values: as in :func:`solve_tubes`.
-        start: of a model: a solution whose inputs are followed to these, or unknowns near the equilibrium; where that
-            leads nowhere, and by default, straight tubes.
-        parameters: of a model, by name or stacked; by default the scene's.
-        stable: as in :func:`cosserat_casadi.solve`.
-        estimate_error: of a model, whether its error is estimated, by the equilibrium with twice its steps.
-        progress: not called: the search takes a moment.
-        report: not called either.
+        values: inputs, as in :func:`solve_tubes`.
+        start: for a model, a solution whose inputs are followed to these, or unknowns near the equilibrium; by default,
+            and if that fails, straight tubes.
+        parameters: for a model, parameters by name or stacked; by default the scene's.
+        stable: whether a stable equilibrium is wanted, as in :func:`cosserat_casadi.solve`.
+        estimate_error: for a model, whether its error is estimated by the equilibrium with twice its steps.
+        progress: not called, as the search takes a moment.
+        report: not called.
 
     Raises:
-        SceneError: a value is refused, or a stable equilibrium is wanted where the loads have no energy.
+        SceneError: a value is refused, or a stable equilibrium is wanted for loads without an energy.
     """
     if isinstance(subject, scenes.Scene):
         return stable_tubes(subject, values) if stable else solve_tubes(subject, values)
@@ -176,14 +176,14 @@ def tubes_at_rest(
 
 
 def stable_tubes(scene: scenes.Scene, values: Values = None) -> TubeSolution:
-    """The equilibrium of :func:`solve_tubes`; the stable one of least energy where it is not stable and there is one.
+    """Find the equilibrium of :func:`solve_tubes`, or if it is unstable the stable one of least energy, if any.
 
     Args:
         scene: a scene with tubes.
         values: as in :func:`solve_tubes`.
 
     Raises:
-        SceneError: as :func:`all_equilibria`, and where the loads have no energy.
+        SceneError: as for :func:`all_equilibria`, and for loads without an energy.
     """
     if not robot_of(scene).has_energy:
         problem = "the loads have no energy, which would tell what is stable"
@@ -195,7 +195,7 @@ def stable_tubes(scene: scenes.Scene, values: Values = None) -> TubeSolution:
 
 
 def _under_loads(model: LoadedTubeModel, at: FloatArray) -> TubeEquilibria:
-    """The equilibria that those without loads lead to."""
+    """Follow the equilibria without loads to equilibria under loads."""
     robot = model.robot
     without = _without_loads(model.without_loads, at)
     while True:
@@ -220,7 +220,7 @@ def _differ(one: TubeSolution, other: TubeSolution) -> bool:
 
 
 def _without_loads(model: TubeModel, at: FloatArray) -> TubeEquilibria:
-    """Every equilibrium of tubes without loads, looked for with a model to begin with."""
+    """Find every equilibrium of tubes without loads, beginning with a given model."""
     robot = model.robot
     while True:
         angles, settled = _searched(model, at)
@@ -236,14 +236,14 @@ def _without_loads(model: TubeModel, at: FloatArray) -> TubeEquilibria:
 
 
 def _refined(model: TubeFunctions, finer: TubeFunctions, inputs: FloatArray, x: FloatArray) -> TubeSolution:
-    """An equilibrium of the finer model near one of a model, with the estimate of its error."""
+    """Solve for the equilibrium of a finer model near one of a model, with its error estimate."""
     rough = solution_near(model, inputs, x)
     fine = solution_near(finer, inputs, x)
     return judged(fine, error_beside(rough, fine))
 
 
 def _is_whole(solutions: list[TubeSolution]) -> bool:
-    """Whether equilibria differ, and have the signs that all equilibria have."""
+    """Whether equilibria differ, and the signs of their determinants sum to one."""
     for one, other in itertools.combinations(solutions, 2):
         if np.abs(one.x - other.x).max() < SAME:
             return False
@@ -255,7 +255,7 @@ def _degree(determinants: Iterator[float]) -> int:
 
 
 Search = tuple[list[FloatArray], bool]
-"""Angles at the tips of each equilibrium of a model, shape (n,), rad, and whether the search ended by itself."""
+"""Angles at the tips of each equilibrium of a model, shape (n,), rad, and whether the search settled."""
 
 
 def _searched(model: TubeModel, inputs: FloatArray) -> Search:
@@ -281,9 +281,9 @@ class _Reading:
     """Reading of the scan of two tubes at one angle between the tips.
 
     Attributes:
-        angle: between the tips, rad.
-        missed: by how much the angle between the drives differs from the inputs' angle, rad.
-        slope: derivative of ``missed`` with the angle.
+        angle: angle between the tips, rad.
+        missed: angle between the drives less that of the inputs, rad.
+        slope: derivative of ``missed`` by the angle.
     """
 
     angle: float
@@ -299,24 +299,24 @@ class _Pair:
     inputs: FloatArray
 
     def read(self, angle: float) -> _Reading:
-        """The drives where the tips are at an angle."""
+        """Evaluate the drives for an angle between the tips."""
         jacobian, residual = self.model.jacobian([0.0, angle], self.inputs)
         missed = float(residual[1] - residual[0])
         slope = float(jacobian[1, 1] - jacobian[0, 1])
         return _Reading(angle, missed, slope)
 
     def tips(self, angle: float) -> FloatArray:
-        """Angles at both tips, turned together until the first drive is met."""
+        """Angles at both tips, after a common rotation with which the first drive is met."""
         together = np.array([0.0, angle])
         residual = np.ravel(self.model.residual(together, self.inputs).full())
         return np.asarray(together - residual[0])
 
 
 def _readings(pair: _Pair) -> tuple[list[_Reading], bool]:
-    """Readings over one turn of the tips, so close that a cubic between neighbours predicts the readings between.
+    """Take readings over one turn of the tips, so close that a cubic between neighbours predicts those in between.
 
     Returns:
-        The readings, and whether they are as close as that everywhere.
+        The readings, and whether they are that close everywhere.
     """
     angles = FIRST_ANGLE + np.linspace(0.0, TURN, FIRST_INTERVALS + 1)
     first, *later = [pair.read(float(angle)) for angle in angles]
@@ -363,7 +363,7 @@ def _roots(pair: _Pair, before: _Reading, after: _Reading) -> list[float]:
 
 
 def _crossing(pair: _Pair, start: _Reading, end: _Reading, level: float) -> float:
-    """The angle at which the drives are off by a level, between readings on both sides of it."""
+    """Find the angle at which ``missed`` has a given level, between readings on both sides of it."""
 
     def above(angle: float) -> float:
         return pair.read(angle).missed - level
@@ -389,7 +389,7 @@ def _of_more_tubes(model: TubeModel, inputs: FloatArray) -> Search:
 
 
 def _starts(model: TubeModel, inputs: FloatArray, points: int) -> Iterator[FloatArray]:
-    """Angles at the tips on a grid, turned together and by full turns until the drives are met as near as that goes."""
+    """Angles at the tips on a grid, rotated together and by full turns to meet the drives as nearly as possible."""
     angles = FIRST_ANGLE + TURN / points * np.arange(points)
     for between in itertools.product(angles, repeat=model.tube_count - 1):
         tips = np.array([0.0, *between])

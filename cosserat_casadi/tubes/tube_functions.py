@@ -1,7 +1,7 @@
-"""Functions that models of concentric tubes share: what follows from the state along the robot.
+"""Functions shared by the models of concentric tubes, which follow from the state along the robot.
 
-A model (`tubes.tube_model`, `tubes.loaded_model`) says which numbers at the tip are unknown, and integrates the state
-from there to the base plate.
+A model (`tubes.tube_model`, `tubes.loaded_model`) defines the unknowns at the tip, and integrates the state from there
+to the base plate.
 """
 
 from __future__ import annotations
@@ -33,31 +33,31 @@ from cosserat_casadi.tubes.tube_flow import FlowState
 from cosserat_casadi.tubes.variations import TipVariations
 
 Entered = Callable[[int, Matrix, Matrix], tuple[Matrix, Matrix]]
-"""State and sections at the start of a piece ↦ the same beyond the loads that act there."""
+"""(piece, state, sections) at the start of a piece ↦ state and sections after the loads that act there."""
 
 NEWTON_TOLERANCE = 1e-12
-"""Angle missed, rad, at which the steps of `equilibrium` end."""
+"""Angle by which drives are missed, rad, at which the steps of `equilibrium` end."""
 
 NEWTON_STEPS = 30
 """Most steps of `equilibrium`."""
 
 RESOLVED = 64.0
-"""Residual that half of the steps may leave, over the tolerance, where all steps are called enough.
+"""Largest residual of half of the steps, over the tolerance, at which all steps count as enough.
 
-Steps are of order eight: steps of half the length leave 1/256 of it, and the tips follow by up to a few times that."""
+Steps are of order eight: steps of half the length leave 1/256 of it, and the tips err by up to a few times that."""
 
 
 class TubeFunctions(WithParameters, Shown):
     """A robot of concentric tubes with a number of steps.
 
-    Functions take the unknowns x, of which the first n are the angles at the tips of the tubes, and the inputs: the
-    rotation and the translation of each tube, then the loads; behind the inputs the parameters, where the scene names
-    some. Functions of a path have their names and arguments in :class:`cosserat_casadi.Model`; the load factor
-    multiplies all curvatures, so that 0 is straight tubes.
+    Functions take the unknowns x, of which the first n are the angles at the tips of the tubes, and the inputs, which
+    are the rotation and translation of each tube, then the loads; the parameters follow, if the scene names some.
+    Functions of a path have the names and arguments of :class:`cosserat_casadi.Model`; the load factor multiplies all
+    curvatures, so that tubes are straight at 0.
 
     Attributes:
         robot: the tubes.
-        steps: steps of each of the pieces that the robot has between places where a tube begins to bend or ends, 2 n,
+        steps: number of steps of each piece. Pieces are divided at the 2 n places where a tube begins to bend or ends,
             and where forces act beside the tips.
     """
 
@@ -66,7 +66,7 @@ class TubeFunctions(WithParameters, Shown):
         self.steps = steps
 
     def __reduce__(self) -> tuple[type[Self], tuple[Robot, int]]:
-        """How pickle and copy make the model anew: its functions are written again when they are asked for."""
+        """Rebuild the model in pickled copies, whose functions are written again on demand."""
         return type(self), (self.robot, self.steps)
 
     @property
@@ -76,7 +76,7 @@ class TubeFunctions(WithParameters, Shown):
 
     @property
     def scene(self) -> Scene:
-        """The scene this is a model of."""
+        """Scene of the model."""
         return self.robot.scene
 
     @property
@@ -86,12 +86,12 @@ class TubeFunctions(WithParameters, Shown):
 
     @property
     def lengths(self) -> dict[str, float]:
-        """Length that the pose error of each tube is relative to, m: the length of the longest tube."""
+        """Length by which the pose error of each tube is divided, m: the length of the longest tube."""
         return dict.fromkeys(self.robot.names, float(self.robot.length.max()))
 
     @property
     def resolution(self) -> dict[str, int]:
-        """Steps of each piece."""
+        """Number of steps of each piece, by its name."""
         return {"steps": self.steps}
 
     @property
@@ -117,7 +117,7 @@ class TubeFunctions(WithParameters, Shown):
         return np.concatenate([self.robot.rotations(self.robot.inputs), frame])
 
     def has_potential(self, inputs: FloatArray) -> bool:
-        """Whether an energy tells which equilibria are stable, whatever the inputs."""
+        """Whether an energy determines which equilibria are stable, for any inputs."""
         return self.robot.has_energy
 
     # What a model says
@@ -129,7 +129,7 @@ class TubeFunctions(WithParameters, Shown):
 
     @abstractmethod
     def varied(self, x: FloatArray, inputs: FloatArray) -> TipVariations:
-        """How the configuration changes along the robot; where loads act, all loads have an energy."""
+        """Variations of the configuration along the robot, for loads that have an energy."""
 
     @property
     @abstractmethod
@@ -138,7 +138,7 @@ class TubeFunctions(WithParameters, Shown):
 
     @property
     def _jacobian(self) -> Matrix:
-        """Derivative of the residual with x, square."""
+        """Derivative of the residual by x, square."""
         x, _, _ = self._arguments
         return ca.jacobian(self._residual, x)
 
@@ -149,7 +149,7 @@ class TubeFunctions(WithParameters, Shown):
 
     @abstractmethod
     def _state(self, stacked: Matrix) -> FlowState:
-        """The state of stacked entries of `_whole`."""
+        """Make a state from stacked entries of `_whole`."""
 
     @property
     @abstractmethod
@@ -164,11 +164,11 @@ class TubeFunctions(WithParameters, Shown):
     @property
     @abstractmethod
     def _begun(self) -> Matrix:
-        """The stacked state at the tip of the robot, with the carried numbers behind it: none yet."""
+        """The stacked state at the tip of the robot, followed by the carried numbers, of which there are none yet."""
 
     @abstractmethod
     def _passing(self, piece: int, stacked: Matrix) -> Matrix:
-        """The stacked state and the carried numbers behind it, beyond the start of a piece, where tubes may end."""
+        """The stacked state and the carried numbers after the start of a piece, where tubes may end."""
 
     @abstractmethod
     def _missed(self, plate: Matrix) -> Matrix:
@@ -183,7 +183,7 @@ class TubeFunctions(WithParameters, Shown):
 
     @property
     def shape_unknowns(self) -> npt.NDArray[np.bool_]:
-        """Which unknowns belong to a shape, shape (size,): all."""
+        """Mask of the unknowns that belong to a shape, shape (size,): all."""
         return np.ones(self.size, dtype=bool)
 
     @property
@@ -199,29 +199,29 @@ class TubeFunctions(WithParameters, Shown):
 
     @cached_property
     def resolution_index(self) -> ca.Function:
-        """(x, inputs) ↦ residual that half of the steps leave, over the largest that is enough; above 1 unresolved."""
+        """(x, inputs) ↦ residual of half of the steps, over the largest one that is enough; above 1 unresolved."""
         missed = ca.norm_inf(self.halved.residual(*self._symbols.values()))
         return self._function("resolution_index", {"index": missed / (RESOLVED * self.robot.tolerance)})
 
     @cached_property
     def residual(self) -> ca.Function:
-        """(x, inputs) ↦ residual, zero in equilibrium: see the model; angles in rad."""
+        """(x, inputs) ↦ residual of the model, zero in equilibrium, with angles in rad."""
         return self._function("residual", {"residual": self._residual})
 
     @cached_property
     def jacobian(self) -> ca.Function:
-        """(x, inputs) ↦ derivative of the residual with x, square, and the residual."""
+        """(x, inputs) ↦ derivative of the residual by x, square, and the residual."""
         return self._function("jacobian", {"jacobian": self._jacobian, "residual": self._residual})
 
     @cached_property
     def input_jacobian(self) -> ca.Function:
-        """(x, inputs) ↦ derivative of the residual with the inputs, a column each."""
+        """(x, inputs) ↦ derivative of the residual by the inputs, a column for each."""
         _, inputs, _ = self._arguments
         return self._function("input_jacobian", {"input_jacobian": ca.jacobian(self._residual, inputs)})
 
     @cached_property
     def parameter_jacobian(self) -> ca.Function:
-        """(x, inputs, p) ↦ derivative of the residual with the parameters, a column each."""
+        """(x, inputs, p) ↦ derivative of the residual by the parameters, a column for each."""
         by_parameters = ca.jacobian(self._residual, self.parameters.symbol)
         return self._function("parameter_jacobian", {"parameter_jacobian": by_parameters})
 
@@ -232,7 +232,7 @@ class TubeFunctions(WithParameters, Shown):
 
     @cached_property
     def path_jacobian(self) -> ca.Function:
-        """(x, inputs, load_factor) ↦ derivative of that residual with x."""
+        """(x, inputs, load_factor) ↦ derivative of that residual by x."""
         return self._on_path("path_jacobian", {"jacobian": self._jacobian})
 
     @cached_property
@@ -245,7 +245,7 @@ class TubeFunctions(WithParameters, Shown):
 
     @property
     def step_weights(self) -> FloatArray:
-        """How much each unknown counts in the length of a step: angles and numbers of a quaternion alike."""
+        """Weight of each unknown in the length of a step, equal for angles and numbers of a quaternion."""
         return np.ones(self.size)
 
     @property
@@ -255,16 +255,16 @@ class TubeFunctions(WithParameters, Shown):
 
     @property
     def hessian_is_cheap(self) -> bool:
-        """Whether an optimiser is faster with exact second derivatives: all steps would be integrated for each."""
+        """Whether an optimiser is faster with exact second derivatives: no, as each integrates all steps."""
         return False
 
     @cached_property
     def equilibrium(self) -> ca.Function:
-        """(start, inputs) ↦ unknowns, by Newton's method, and the sum of angles missed, 1×1, rad.
+        """(start, inputs) ↦ unknowns by Newton's method, and the sum of the angles that drives are missed by, 1×1, rad.
 
         It is an expression like any other: CasADi differentiates it exactly, by the implicit function theorem, and
-        writes it in C. Full steps from the start, at most NEWTON_STEPS. Where the angle missed is not small, or no
-        number, nothing was found: whoever calls it has to look.
+        writes it in C. It takes full steps from the start, at most NEWTON_STEPS. If the missed angle is not small, or
+        is NaN, no equilibrium was found: the caller has to check it.
         """
         x, *given = self._symbols.values()
         missed = ca.Function("missed", [x, *given], [self.residual(x, *given)])
@@ -280,9 +280,9 @@ class TubeFunctions(WithParameters, Shown):
 
     @cached_property
     def energy(self) -> ca.Function:
-        """(x, inputs) ↦ elastic energy of what stands out, and of torsion in the housing, J.
+        """(x, inputs) ↦ elastic energy of the protruding robot, and of torsion in the housing, J.
 
-        The work of the loads is subtracted where all loads have an energy: see :attr:`Robot.has_energy`.
+        The work of the loads is subtracted if all loads have an energy: see :attr:`Robot.has_energy`.
         """
         last = self._state(self._whole.ends[-1])
         twisting = ca.sum1(last.torques**2 * self._compliance) / 2
@@ -310,7 +310,7 @@ class TubeFunctions(WithParameters, Shown):
     def section(self) -> dict[str, ca.Function]:
         """(x, inputs, at) ↦ position, m, and quaternion of a section of a tube in base axes, by name.
 
-        The abscissa at is 0 at the drive's end of the tube and 1 at its tip. In the housing tubes are straight.
+        The abscissa ``at`` is 0 at the drive's end of the tube and 1 at its tip. In the housing tubes are straight.
         """
         at = ca.MX.sym("at")
         functions = {}
@@ -322,10 +322,10 @@ class TubeFunctions(WithParameters, Shown):
 
     @cached_property
     def tip_jacobian(self) -> ca.Function:
-        """(x, inputs) ↦ derivatives of the poses of all tips with the inputs in equilibrium, 6 n rows.
+        """(x, inputs) ↦ derivatives of the poses of all tips by the inputs in equilibrium, 6 n rows.
 
-        Six rows a tube, angular first: its turn [δθ; δr] in base axes, in rad and m, per unit of the input. Unknowns
-        follow the inputs, δx = −(∂g/∂x)⁻¹ ∂g/∂inputs δinputs; it is not finite where the robot snaps.
+        Each tube has six rows [δθ; δr] in base axes, in rad and m, per unit of the input. Unknowns follow the inputs,
+        δx = −(∂g/∂x)⁻¹ ∂g/∂inputs δinputs; the result is not finite where the robot snaps.
         """
         jacobian, by_inputs, poses, poses_by_x, poses_by_inputs, *_ = self.sensitivity(*self._symbols.values())
         following = -ca.solve(jacobian, by_inputs)
@@ -342,9 +342,9 @@ class TubeFunctions(WithParameters, Shown):
     def sensitivity(self) -> ca.Function:
         """(x, inputs) ↦ derivatives of residual and tips, from one integration with all changes.
 
-        Derivatives of the residual with x, square, and with the inputs; positions and quaternions of the tips in base
-        axes, 7×n, and their derivatives with x and with the inputs at the same x, 7 n rows, tube after tube. Where the
-        scene names parameters, derivatives of both with these.
+        The results are derivatives of the residual by x, square, and by the inputs; positions and quaternions of the
+        tips in base axes, 7×n, and their derivatives by x and by the inputs at fixed x, 7 n rows, tube by tube; if the
+        scene names parameters, also derivatives of both by these.
         """
         x, *given = self._symbols.values()
         directions = Directions(self.robot, self.size)
@@ -416,11 +416,11 @@ class TubeFunctions(WithParameters, Shown):
 
     @cached_property
     def stations(self) -> ca.Function:
-        """(x, inputs) ↦ the robot at all ends of steps from the plate to its tip, a column each.
+        """(x, inputs) ↦ the robot at all ends of steps from the plate to its tip, as columns.
 
-        Distances from the plate along the centre line, 1×k, m; positions, 3×k, m, and quaternions, 4×k, of the frame
-        that does not turn about the centre line, in base axes; angles of the tubes against it, n×k, rad; torques in
-        the tubes, n×k, N m.
+        The results are distances from the plate along the centre line, 1×k, m; positions, 3×k, m, and quaternions, 4×k,
+        of the frame that does not turn about the centre line, in base axes; angles of the tubes against it, n×k, rad;
+        torques in the tubes, n×k, N m.
         """
         columns = [self._state(column) for column in reversed(ca.horzsplit(self._whole.stations))]
         poses = [self._in_base(column.pose) for column in columns]
@@ -437,12 +437,12 @@ class TubeFunctions(WithParameters, Shown):
 
     @cached_property
     def _arguments(self) -> tuple[ca.MX, ca.MX, ca.MX]:
-        """Unknowns, inputs and load factor, of which all functions are."""
+        """Symbols of unknowns, inputs and load factor, the arguments of all functions."""
         return ca.MX.sym("x", self.size), ca.MX.sym("inputs", self.robot.inputs.size), ca.MX.sym("load_factor")
 
     @property
     def _symbols(self) -> dict[str, ca.MX]:
-        """Arguments of all functions by name: unknowns, inputs, and parameters where the scene names some."""
+        """Arguments of all functions by name: unknowns, inputs, and parameters if the scene names some."""
         x, inputs, _ = self._arguments
         symbols = {"x": x, "inputs": inputs}
         if self.parameters.size:
@@ -490,10 +490,10 @@ class TubeFunctions(WithParameters, Shown):
 
     @cached_property
     def _places(self) -> list[ca.MX]:
-        """Where tubes end and where they begin to bend, from the tip of the robot to the plate, then the plate.
+        """Distances from the plate where tubes end or begin to bend, sorted from the tip of the robot, then zero.
 
-        The order is found as the function is evaluated: inputs may change it, and pieces between places that coincide,
-        or lie in the housing, have no length.
+        The order is determined at evaluation, because inputs may change it; pieces between places that coincide, or are
+        in the housing, have zero length.
         """
         places = list(self._unsorted)
         # Exchanging neighbours sorts whatever the values are, without a branch.
@@ -508,17 +508,17 @@ class TubeFunctions(WithParameters, Shown):
 
     @property
     def _unsorted(self) -> list[ca.MX]:
-        """Where tubes end and begin to bend, tube after tube, then what else divides the robot."""
+        """Places where tubes end and begin to bend, tube by tube, then other places that divide the robot."""
         return [*[place for ends in self._ends for place in ends], *self._loaded_places]
 
     @property
     def _loaded_places(self) -> list[ca.MX]:
-        """Where forces act beside the tips."""
+        """Places where forces act beside the tips."""
         return []
 
     @cached_property
     def _ends(self) -> list[tuple[ca.MX, ca.MX]]:
-        """How far the tip of every tube, and the beginning of its curved part, stand out of the plate, m."""
+        """Distances from the plate of the tip of every tube, and of the beginning of its curved part, m."""
         _, inputs, _ = self._arguments
         ends = []
         for index in range(self.tube_count):
@@ -535,7 +535,7 @@ class TubeFunctions(WithParameters, Shown):
         return [self._rank(2 * index) for index in range(self.tube_count)]
 
     def _rank(self, own: int) -> ca.MX:
-        """Index among the sorted places of one of `_unsorted`, 1×1; places that coincide have different indices."""
+        """Index among the sorted places of an entry of `_unsorted`, 1×1; coinciding places have different indices."""
         rank = ca.MX(0.0)
         for number, place in enumerate(self._unsorted):
             if number < own:
@@ -567,20 +567,20 @@ class TubeFunctions(WithParameters, Shown):
 
     @property
     def _compliance(self) -> ca.MX:
-        """Angle that a torque of one turns the drive end of every tube against the plate, n×1, rad/(N m)."""
+        """Torsional compliance of every tube in the housing, between drive and plate, n×1, rad/(N m)."""
         _, inputs, _ = self._arguments
         inside = as_matrix(self.robot.numbers.length) - self.robot.translations(inputs)
         return inside / as_matrix(self.robot.numbers.torsion)
 
     def _in_base(self, pose: Pose) -> Pose:
-        """A pose in base axes, from the pose in the axes of the tip's frame."""
+        """Transform a pose from the axes of the tip's frame to base axes."""
         return self._state(self._whole.ends[-1]).pose.seen(pose)
 
     def _tip_pose(self, index: int, plate: Matrix, reached: Matrix) -> Pose:
-        """Pose of a tube's tip in base axes; its x axis is the direction that the tube would bend towards.
+        """Pose of a tube's tip in base axes; its x axis is the direction in which the tube would bend.
 
         Args:
-            index: of the tube.
+            index: index of the tube.
             plate: stacked state at the plate.
             reached: stacked state at the tip of the tube.
         """
@@ -590,7 +590,7 @@ class TubeFunctions(WithParameters, Shown):
         return self._state(plate).pose.seen(self._state(reached).pose).then(turn)
 
     def _section_pose(self, index: int, at: ca.MX) -> Pose:
-        """Pose of a section of a tube in base axes, by a part of the step that it lies in."""
+        """Pose of a section of a tube in base axes, by part of the step that contains it."""
         _, inputs, _ = self._arguments
         length = self.robot.numbers.length[index]
         distance = self.robot.translations(inputs)[index] - (1 - at) * length
@@ -619,7 +619,7 @@ class TubeFunctions(WithParameters, Shown):
     def _function(
         self, name: str, outputs: Mapping[str, Matrix], further: Mapping[str, ca.MX] | None = None
     ) -> ca.Function:
-        """A function of unknowns, inputs and further arguments, of tubes with the curvatures of the scene."""
+        """Make a function of unknowns, inputs and further arguments, for tubes with the curvatures of the scene."""
         _, _, load_factor = self._arguments
         results = ca.substitute(list(outputs.values()), [load_factor], [ca.MX(1.0)])
         return self._named(name, dict(zip(outputs, results, strict=True)), further or {})
@@ -627,18 +627,18 @@ class TubeFunctions(WithParameters, Shown):
     def _on_path(
         self, name: str, outputs: Mapping[str, Matrix], further: Mapping[str, ca.MX] | None = None
     ) -> ca.Function:
-        """A function of unknowns, inputs and load factor, and further arguments."""
+        """Make a function of unknowns, inputs, load factor and further arguments."""
         _, _, load_factor = self._arguments
         return self._named(name, outputs, {"load_factor": load_factor, **(further or {})})
 
     def _named(self, name: str, outputs: Mapping[str, Matrix], further: Mapping[str, ca.MX]) -> ca.Function:
-        """A function of unknowns, inputs and further arguments, as their symbols have them."""
+        """Make a function of unknowns, inputs and further arguments, by their symbols."""
         arguments = {**self._symbols, **further}
         return ca.Function(name, list(arguments.values()), list(outputs.values()), list(arguments), list(outputs))
 
 
 def _selected(rank: ca.MX, columns: list[Matrix]) -> Matrix:
-    """The column of a number that is known as the function is evaluated."""
+    """Select the column with an index that is known only at evaluation."""
     chosen: Matrix = ca.DM(0.0)
     for number, column in enumerate(columns):
         chosen = chosen + ca.if_else(rank == ca.MX(number), column, 0.0)

@@ -1,4 +1,4 @@
-"""The loads of a scene of concentric tubes as numbers: how much of each input every tube bears."""
+"""The loads of a scene of concentric tubes as numbers: the share of each input that every tube bears."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ class TubeLoad:
     """An input of a load: a vector, of which each tube bears a share.
 
     Attributes:
-        name: of the input, such as "push.force".
-        shares: of each tube: 1 of a wrench on it; mass per length of one that is weighed, kg/m, which may be an
+        name: name of the input, such as "push.force".
+        shares: share of each tube: 1 for a wrench on it; for gravity its mass per length, kg/m, which may be an
             expression of parameters.
         is_moment: whether it is a moment, and not a force.
         spread: whether it acts per length from the plate to the tip, and not at the tip.
         follower: whether it turns with the tube, and does not keep its direction in the world.
-        from_tip: how far from the tip of its tube it acts, along the tube, m.
+        from_tip: distance of its point of action from the tip of its tube, along the tube, m.
     """
 
     name: str
@@ -36,7 +36,7 @@ class TubeLoad:
 
     @property
     def has_energy(self) -> bool:
-        """Whether the load has a potential: a force that keeps its direction does."""
+        """Whether the load has a potential, as a force of constant direction has."""
         return not self.is_moment and not self.follower
 
     @property

@@ -19,15 +19,15 @@ from cosserat_casadi.tubes.variations import TipVariations
 
 
 class TubeModel(TubeFunctions):
-    """A robot of concentric tubes without loads; unknown are the angles x at the tips of the tubes (n)."""
+    """A robot of concentric tubes without loads; the unknowns x are the angles at the tips of the tubes (n)."""
 
     @property
     def size(self) -> int:
-        """Number of unknowns: one a tube."""
+        """Number of unknowns: one for each tube."""
         return self.tube_count
 
     def varied(self, x: FloatArray, inputs: FloatArray) -> TipVariations:
-        """How the angles and torques change along the robot."""
+        """Variations of the angles and torques along the robot."""
         along, of_steps = (part.full() for part in self.variations(x, inputs))
         size = self.tube_count
         # Of each station the changes of angles, then those of torques.
@@ -40,10 +40,10 @@ class TubeModel(TubeFunctions):
 
     @cached_property
     def variations(self) -> ca.Function:
-        """(x, inputs) ↦ how the angles and torques at all ends of steps change.
+        """(x, inputs) ↦ changes of the angles and torques at all ends of steps.
 
-        With the angles at the tips, (2 n k)×n, column after column of the stations from the tip to the plate; and, for
-        each step, the angles at its end with the torques at its start, n×(n (k − 1)).
+        The results are changes by the angles at the tips, (2 n k)×n, by columns of the stations from the tip to the
+        plate; and, for each step, changes of the angles at its end by the torques at its start, n×(n (k − 1)).
         """
         size = self.tube_count
         x, _, _ = self._arguments
@@ -66,7 +66,7 @@ class TubeModel(TubeFunctions):
 
     @cached_property
     def _twist(self) -> March:
-        """Angles and torques alone: what decides on equilibrium and stability."""
+        """Angles and torques alone, which decide on equilibrium and stability."""
         x, _, _ = self._arguments
         return self._taken(twist_step(self.tube_count), ca.vertcat(x, ca.DM.zeros(self.tube_count)))
 

@@ -1,4 +1,4 @@
-"""An equilibrium of concentric tubes, and what follows from it."""
+"""An equilibrium of concentric tubes, with its shape, poses and stability."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ class TubeShape:
     """A robot at k places from the plate to its tip.
 
     Attributes:
-        distance: from the plate along the centre line, shape (k,), m.
-        position: in world axes, shape (k, 3), m.
-        quaternion: of the frame that follows the centre line without turning about it, w x y z, shape (k, 4).
-        angles: of the tubes against that frame, shape (k, n), rad; beyond its tip a tube keeps the angle of the tip.
-        torques: in the tubes, shape (k, n), N m.
+        distance: distance from the plate along the centre line, shape (k,), m.
+        position: position in world axes, shape (k, 3), m.
+        quaternion: frame that follows the centre line without turning about it, w x y z, shape (k, 4).
+        angles: angles of the tubes against that frame, shape (k, n), rad; beyond its tip a tube keeps the tip's angle.
+        torques: torques in the tubes, shape (k, n), N m.
     """
 
     distance: FloatArray
@@ -59,10 +59,10 @@ class TubeSolution(Equilibrium[TubeFunctions]):
     """An equilibrium of concentric tubes.
 
     The inputs are the rotation and translation of each tube, rad and m, then the loads, shape (2 n + 3 m,). The
-    unknowns are the angles at the tips against the frame of the centre line, shape (n,), rad; under loads that frame's
-    quaternion in world axes behind them, shape (n + 4,). The residual norm is the largest angle that the tubes miss
-    their drives by, rad; distances in the error estimate are relative to the length that stands out. The iterations
-    count the search with this model; 0 at points of a path.
+    unknowns are the angles at the tips against the frame of the centre line, shape (n,), rad; under loads they are
+    followed by that frame's quaternion in world axes, shape (n + 4,). The residual norm is the largest angle by which
+    tubes miss their drives, rad; distances in the error estimate are relative to the protruding length. The iterations
+    are those of the search with this model; 0 at points of a path.
     """
 
     @property
@@ -82,14 +82,14 @@ class TubeSolution(Equilibrium[TubeFunctions]):
 
     @property
     def stable(self) -> bool | None:
-        """Whether the energy rises in every direction; None where the loads have no energy."""
+        """Whether the energy rises in every direction; None for loads without an energy."""
         return self.stability.stable
 
     @cached_property
     def energy(self) -> float:
-        """Elastic energy of what stands out of the plate, and of torsion in the housing, less the work of the loads, J.
+        """Elastic energy of the protruding robot, and of torsion in the housing, less the work of the loads, J.
 
-        The work counts where all loads have an energy.
+        The work counts if all loads have an energy.
         """
         return float(self.model.energy(self.x, self.inputs))
 
@@ -107,7 +107,7 @@ class TubeSolution(Equilibrium[TubeFunctions]):
 
     @cached_property
     def tips(self) -> dict[str, NumericPose]:
-        """Pose of every tube's tip in the world, by name; z is the tangent, x the side that the tube would bend to."""
+        """Pose of every tube's tip in the world, by name; z is the tangent, x the side to which the tube would bend."""
         position, quaternion = self.model.tips(self.x, self.inputs)
         return {
             name: NumericPose(position.full()[:, index], quaternion.full()[:, index])
@@ -116,7 +116,7 @@ class TubeSolution(Equilibrium[TubeFunctions]):
 
     @property
     def remedy(self) -> str:
-        """The remedy where the error is above the tolerance."""
+        """Remedy for an error above the tolerance."""
         return f"it has {self.model.steps} steps a piece: allow more of them, or ask for a larger tolerance."
 
     def tip(self, name: str | None = None) -> NumericPose:
@@ -133,13 +133,13 @@ class TubeSolution(Equilibrium[TubeFunctions]):
 
     @cached_property
     def tip_jacobian(self) -> FloatArray:
-        """Derivatives of the poses of all tips with the inputs, shape (n, 6, 2 n + 3 m), angular first, rad and m."""
+        """Derivatives of the poses of all tips by the inputs, shape (n, 6, 2 n + 3 m), angular first, rad and m."""
         jacobian = self.model.tip_jacobian(self.x, self.inputs).full()
         return np.asarray(jacobian.reshape(self.robot.size, 6, -1))
 
 
 def tip_error(found: TubeSolution, finer: TubeSolution) -> float:
-    """Largest pose error of the tips of one solution beside a finer one, distances relative to the length outside."""
+    """Largest pose error of the tips against a finer solution, with distances relative to the protruding length."""
     length = float(finer.robot.translations(finer.inputs).max())
     rough = found.tips.values()
     exact = finer.tips.values()

@@ -26,35 +26,35 @@ from cosserat_casadi.tubes.tube_solution import TubeSolution, tip_error
 Found = TypeVar("Found")
 
 FEWEST_STEPS = 2
-"""Steps of a piece that the search begins with."""
+"""Initial number of steps of a piece."""
 
 LOADING = ArcSettings(longest=0.1, load_factor_change=0.05)
-"""Limits of a path over the loads; angles at the tips count in rad, the loads as their share."""
+"""Limits of a path over the loads; angles at the tips count in rad, loads by the load factor."""
 
 ENOUGH_STEPS = 32
-"""Steps of a piece with which an equilibrium that has not been found is not looked for any more."""
+"""Steps of a piece at which the search for an equilibrium that was not found ends."""
 
 MOST_STEPS = 256
-"""Steps of a piece beyond which a solve gives up."""
+"""Largest number of steps of a piece."""
 
 
 def model_of(robot: Robot, steps: int) -> TubeFunctions:
-    """The model of a robot with a number of steps: with the frame at the tip unknown where there are loads."""
+    """Make the model of a robot with a number of steps; under loads the frame at the tip is also unknown."""
     if robot.loads:
         return LoadedTubeModel(robot, steps)
     return TubeModel(robot, steps)
 
 
 def solve_tubes(scene: scenes.Scene, values: Values = None) -> TubeSolution:
-    """Find the equilibrium that the tubes have when they are bent, at these inputs, from straight ones, then loaded.
+    """Find the equilibrium of tubes that are bent from straight ones at these inputs, and then loaded.
 
-    A robot is in this equilibrium if it was curved where it is; a robot that was turned there may be in another. The
-    result says whether it is stable; :func:`all_equilibria` finds other equilibria.
+    A robot is in this equilibrium if its curvature grew at these inputs; a robot whose drives were turned there may be
+    in another one. The result says whether it is stable; :func:`all_equilibria` finds other equilibria.
 
     Args:
         scene: a scene with tubes.
-        values: inputs by name, such as "inner.rotation" or "push.force", where inputs left out keep the scene's value;
-            or all inputs, rotation and translation of each tube, rad and m, and the loads.
+        values: inputs by name, such as "inner.rotation" or "push.force", with the scene's values for the others; or all
+            inputs, rotation and translation of each tube, rad and m, and the loads.
 
     Raises:
         SceneError: the scene has no tubes, or an input is unknown or out of its range.
@@ -71,18 +71,18 @@ class TubeModels:
         self._made: dict[int, TubeFunctions] = {}
 
     def of(self, steps: int) -> TubeFunctions:
-        """The model with a number of steps."""
+        """Return the model with a number of steps."""
         if steps not in self._made:
             self._made[steps] = model_of(self.robot, steps)
         return self._made[steps]
 
 
 def solve_inputs(models: TubeModels, at: FloatArray) -> TubeSolution:
-    """Solve as :func:`solve_tubes` does, with models that serve one set of inputs after another.
+    """Solve as :func:`solve_tubes` does, with models that are reused for many sets of inputs.
 
     Args:
         models: models of the robot.
-        at: all inputs, in their range.
+        at: all inputs, in their ranges.
     """
     found, error = doubled(
         lambda steps: solve_at(models.of(steps), at),
@@ -101,13 +101,13 @@ def doubled(
     tolerance: float,
     lost: Callable[[int, Found, Found], bool],
 ) -> tuple[Found, float | None]:
-    """The first of several results that differs from the result of half the steps by less than a tolerance.
+    """Double the steps until a result differs from that of half the steps by less than a tolerance.
 
     Args:
         at: steps of a piece ↦ result.
-        steps: the number of steps to begin with.
-        error_of: (coarse, fine) ↦ their difference; None where it has no meaning.
-        tolerance: the difference that is allowed.
+        steps: initial number of steps.
+        error_of: (coarse, fine) ↦ their difference; None if it has no meaning.
+        tolerance: allowed difference.
         lost: (steps, coarse, fine) ↦ whether more steps are not worth trying.
 
     Returns:
@@ -125,12 +125,12 @@ def doubled(
 
 
 def error_beside(solution: TubeSolution, finer: TubeSolution) -> float | None:
-    """The error of the tips of a solution beside a finer one; None where either is no equilibrium."""
+    """Error of the tips of a solution against a finer one; None if either is no equilibrium."""
     return tip_error(solution, finer) if solution.converged and finer.converged else None
 
 
 def judged(solution: TubeSolution, error: float | None) -> TubeSolution:
-    """A solution with the estimate of its error; unresolved where that is above the tolerance, or not known."""
+    """Add the error estimate to a solution, which is unresolved if it is above the tolerance, or unknown."""
     estimated = replace(solution, error_estimate=error)
     if estimated.converged and not estimated.within_tolerance:
         return estimated.unresolved()
@@ -138,7 +138,7 @@ def judged(solution: TubeSolution, error: float | None) -> TubeSolution:
 
 
 def solve_at(model: TubeFunctions, inputs: FloatArray) -> TubeSolution:
-    """The equilibrium of a model that straight tubes lead to, while their curvature grows, and then their loads."""
+    """Solve for the equilibrium reached from straight tubes as their curvature grows, and then their loads."""
     if isinstance(model, LoadedTubeModel):
         curved = solve_at(model.without_loads, inputs)
         return loaded_from(model, inputs, curved)
@@ -154,11 +154,11 @@ def solve_at(model: TubeFunctions, inputs: FloatArray) -> TubeSolution:
 
 
 def _followed(path: Path) -> ContinuationResult:
-    """The end of a path, which passes no place where branches come close to each other from one to another.
+    """Follow a path to its end, without jumps between branches that come close to each other.
 
-    Where tubes are nearly opposed a robot may bend to either side, or stay between, which is not stable: a long step
-        comes to any of the three. The determinant has one sign along a branch. A path that cannot keep it is followed
-        as it goes: where tubes are opposed exactly, by symmetry, it leads to the unstable equilibrium.
+    A robot with nearly opposed tubes may bend to either side, or stay between, which is unstable: a long step may reach
+    any of the three. The determinant has one sign along a branch. A path that cannot keep the sign is followed without
+    this condition: for exactly opposed tubes, by symmetry, it leads to the unstable equilibrium.
     """
     rough = follow(path)
     if rough.outcome is Outcome.CONVERGED and _sign(path, (rough.x, 1.0)) == _sign(path, (path.start, 0.0)):
@@ -177,7 +177,7 @@ def _sign(path: Path, point: PathPoint) -> float:
 
 
 def loaded_from(model: LoadedTubeModel, inputs: FloatArray, curved: TubeSolution) -> TubeSolution:
-    """The equilibrium that one without loads leads to, while these grow, through folds if there are any."""
+    """Follow an equilibrium without loads as loads grow, through folds if there are any."""
     start = model.begin(curved.x, inputs)
     if not curved.converged:
         return solution_at(model, inputs, start, found=False)
@@ -194,18 +194,18 @@ def loaded_from(model: LoadedTubeModel, inputs: FloatArray, curved: TubeSolution
 
 
 def moved_to(model: TubeFunctions, start: TubeSolution, inputs: FloatArray) -> TubeSolution:
-    """The equilibrium of a model that one at other inputs leads to, along the straight line between them."""
+    """Follow an equilibrium of a model at other inputs along the straight line to these inputs."""
     end = _followed(input_path(model, start.x, start.inputs, inputs))
     return solution_at(model, inputs, end.x, found=end.outcome is Outcome.CONVERGED, iterations=end.iterations)
 
 
 def finer_than(solution: TubeSolution) -> TubeSolution:
-    """The equilibrium beside a solution with twice the steps."""
+    """Solve for the equilibrium near a solution with twice the steps."""
     return solution_near(model_of(solution.robot, 2 * solution.model.steps), solution.inputs, solution.x)
 
 
 def solution_near(model: TubeFunctions, inputs: FloatArray, start: FloatArray) -> TubeSolution:
-    """The equilibrium of a model that Newton's method leads to from a start."""
+    """Solve for the equilibrium of a model by Newton's method from a start."""
     equations = Equations(
         residual=lambda x: column(model.residual(x, inputs)),
         jacobian=lambda x: model.jacobian(x, inputs)[0].full(),
@@ -217,14 +217,14 @@ def solution_near(model: TubeFunctions, inputs: FloatArray, start: FloatArray) -
 def solution_at(
     model: TubeFunctions, inputs: FloatArray, x: FloatArray, *, found: bool, iterations: int = 0
 ) -> TubeSolution:
-    """Where a search of a model has ended, with the angle that the tubes miss their drives by; its error not estimated.
+    """Make the result of a search of a model, with the angle by which tubes miss their drives, without error estimate.
 
     Args:
         model: the robot.
-        inputs: of the robot.
-        x: its unknowns.
-        found: whether they are an equilibrium.
-        iterations: Newton steps of the search.
+        inputs: inputs of the robot.
+        x: unknowns of the robot.
+        found: whether the unknowns are an equilibrium.
+        iterations: number of Newton steps of the search.
     """
     outcome = Outcome.LOAD_STALLED
     if found:

@@ -1,11 +1,11 @@
-"""Whether an equilibrium of the tubes is stable: the second variation of its energy, by its conjugate points.
+"""Stability of an equilibrium of the tubes: the second variation of its energy, by conjugate points.
 
-The angles have the energy that `tubes.tube_flow` writes; under loads that keep their direction in the world the tangent
-belongs to it too. At the tip they are free, at the drives and at the plate they are held. The steps of
-the integration are symplectic: they are those of a discrete energy, whose second variation is block tridiagonal. Its
-pivots from the tip on follow from how the configuration of the sections changes with that of the tip, and their
-negative eigenvalues are as many as the directions in which the energy falls. For the continuous energy these are the
-conjugate points of I. M. Gelfand, S. V. Fomin, *Calculus of Variations*, 1963, sections 26 to 29. See docs/tubes.md.
+The angles have the energy of `tubes.tube_flow`; under loads of constant direction in the world, the tangent enters it
+too. They are free at the tip, and held at the drives and at the plate. The steps of the integration are symplectic:
+they belong to a discrete energy, whose second variation is block tridiagonal. Its pivots from the tip on follow from
+the derivatives of the configuration of the sections by that of the tip, and the number of their negative eigenvalues is
+the number of directions in which the energy falls. For the continuous energy these are the conjugate points of I. M.
+Gelfand, S. V. Fomin, *Calculus of Variations*, 1963, sections 26 to 29. See docs/tubes.md.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from cosserat_casadi.tubes.tube_functions import TubeFunctions
 from cosserat_casadi.tubes.variations import TipVariations
 
 NEUTRAL = 1e-9
-"""Singular value of the derivative of the drives' angles, relative to the largest, below which it is zero."""
+"""Singular value of the derivative of the drives' angles, over the largest one, below which it counts as zero."""
 
 NO_LENGTH = 1e-12
-"""Length of a step, relative to the robot's, below which it has none."""
+"""Length of a step, over that of the robot, below which it counts as zero."""
 
 NUDGE = 1e-14
-"""Shift of a matrix that is singular to the last digit: the pivots' signs on either side of it add up alike."""
+"""Shift of an exactly singular matrix; the pivots' signs on either side of it have equal sums."""
 
 
 @dataclass(frozen=True)
@@ -33,10 +33,10 @@ class TubeStability:
     """Stability of an equilibrium from the second variation.
 
     Attributes:
-        falling: independent directions in which the energy falls; None where the loads have no energy.
-        neutral: whether there is one more direction, in which the energy does not change: the robot is about to snap.
-        determinant: determinant of the derivative of the drives' angles with the angles at the tips; 1 of tubes that
-            do not twist, 0 where a robot snaps.
+        falling: number of independent directions in which the energy falls; None for loads without an energy.
+        neutral: whether there is a further direction in which the energy does not change: the robot is about to snap.
+        determinant: determinant of the derivative of the drives' angles by the angles at the tips; 1 for tubes that do
+            not twist, 0 where a robot snaps.
     """
 
     falling: int | None
@@ -56,8 +56,8 @@ def stability_of(model: TubeFunctions, x: FloatArray, inputs: FloatArray) -> Tub
 
     Args:
         model: the robot.
-        x: its unknowns.
-        inputs: its inputs.
+        x: unknowns of the equilibrium.
+        inputs: inputs of the robot.
     """
     jacobian = model.jacobian(x, inputs)[0].full()
     singular = np.linalg.svd(jacobian, compute_uv=False)
@@ -72,7 +72,7 @@ def stability_of(model: TubeFunctions, x: FloatArray, inputs: FloatArray) -> Tub
 
 
 def _falling(model: TubeFunctions, variations: TipVariations, inputs: FloatArray) -> int:
-    """Directions in which the energy falls: negative eigenvalues of all pivots."""
+    """Number of directions in which the energy falls: negative eigenvalues of all pivots."""
     falling = 0
     configuration = variations.configuration
     outermost = float(model.robot.translations(inputs).max())
@@ -85,10 +85,10 @@ def _falling(model: TubeFunctions, variations: TipVariations, inputs: FloatArray
 
 
 def _held(model: TubeFunctions, inputs: FloatArray, configuration: FloatArray, torques: FloatArray) -> FloatArray:
-    """Last pivot: stiffness of the robot at the plate beside the torsional stiffness in the housing, n×n, scaled.
+    """Last pivot: stiffness of the robot at the plate plus torsional stiffness in the housing, n×n, scaled.
 
-    The plate holds the tangent. With the compliance C of the housing the pivot is A + C⁻¹. A drive at the plate has no
-    compliance, and C⁻¹ no value: 1 + √C A √C has the same signs, and exists.
+    The plate holds the tangent. With the compliance C of the housing the pivot is A + C⁻¹. A drive at the plate has
+    zero compliance, for which C⁻¹ does not exist: 1 + √C A √C exists and has equal signs.
     """
     robot = model.robot
     root = np.sqrt((robot.length - robot.translations(inputs)).clip(min=0.0) / robot.torsion)
@@ -107,6 +107,6 @@ def _divided(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
 
 
 def _negative(matrix: FloatArray) -> int:
-    """Negative eigenvalues of a matrix that is symmetric up to rounding."""
+    """Number of negative eigenvalues of a matrix that is symmetric up to rounding."""
     eigenvalues = np.linalg.eigvalsh((matrix + matrix.T) / 2)
     return int(np.sum(eigenvalues < 0.0))

@@ -1,8 +1,8 @@
-"""Changes of the configuration of a robot and of its conjugates along the robot, with the free tip.
+"""Variations of the configuration of a robot and of its conjugates along the robot, by those of the free tip.
 
-Without loads the configuration of a section is the angles of its tubes, and conjugate to them are the torques. With
-loads the direction of the tangent belongs to it too, and conjugate to that is the bending moment. The frame may be
-turned about the tangent by any angle, with all angles of tubes turned back, without a change of the equations here.
+Without loads the configuration of a section consists of the angles of its tubes, with the torques as conjugates. With
+loads it includes the direction of the tangent, with the bending moment as conjugate. The frame may be rotated about the
+tangent by any angle, with all angles of tubes rotated back, without a change of the equations here.
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray
 
 DIRECTIONS = 2
-"""Turns of the tangent that change its direction."""
+"""Number of rotations of the tangent that change its direction."""
 
 
 @dataclass(frozen=True)
 class TipVariations:
-    """Changes with m degrees of freedom of the tip, at k stations from the tip to the plate.
+    """Variations by m degrees of freedom of the tip, at k stations from the tip to the plate.
 
     Attributes:
-        configuration: derivatives of the configuration of each station with the tip's, shape (k, m, m), rad: turns of
-            the tubes about the tangent, then turns of the tangent.
-        at_plate: torques of the tubes at the plate, which are conjugate to their turns, shape (n, m), N m.
-        of_steps: the configuration at the end of each step by its conjugates at the start, shape (k − 1, m, m), rad/(N
-            m).
+        configuration: derivatives of the configuration of each station by the tip's, shape (k, m, m), rad: rotations of
+            the tubes about the tangent, then rotations of the tangent.
+        at_plate: derivatives of the torques of the tubes at the plate, conjugate to rotations, shape (n, m), N m.
+        of_steps: derivatives of the configuration at the end of each step by its conjugates at the start, shape
+            (k − 1, m, m), rad/(N m).
     """
 
     configuration: FloatArray
@@ -36,14 +36,14 @@ class TipVariations:
 
 
 def of_loaded(size: int, stations: FloatArray, along: FloatArray, of_steps: FloatArray) -> TipVariations:
-    """Variations of a robot under loads that have an energy.
+    """Make the variations of a robot under loads that have an energy.
 
     Args:
         size: number n of tubes.
         stations: stacked states, shape (2 n + 12, k).
-        along: their changes, stacked as in `LoadedTangent`, with the angles at the tips and a turn of the frame there,
-            shape (2 n + 9, (n + 3) k).
-        of_steps: changes of the states at the end of each step with the torques and the moment at its start, shape
+        along: changes of the states, stacked as in `LoadedTangent`, by the angles at the tips and a rotation of the
+            frame there, shape (2 n + 9, (n + 3) k).
+        of_steps: changes of the states at the end of each step by the torques and the moment at its start, shape
             (2 n + 9, (n + 3) (k − 1)).
     """
     height = len(along)
@@ -67,7 +67,7 @@ def of_loaded(size: int, stations: FloatArray, along: FloatArray, of_steps: Floa
 
 
 def _configuration(size: int, changes: FloatArray, frame: FloatArray) -> FloatArray:
-    """Changes of the configuration, from changes of the state.
+    """Convert changes of the state to changes of the configuration.
 
     Args:
         size: number n of tubes.
@@ -75,7 +75,7 @@ def _configuration(size: int, changes: FloatArray, frame: FloatArray) -> FloatAr
         frame: rotation of the frame there, shape (3, 3).
 
     Returns:
-        Turns of the tubes about the tangent, then of the tangent about the axes across, shape (n + 2, m), rad.
+        Rotations of the tubes about the tangent, then of the tangent about the axes across, shape (n + 2, m), rad.
     """
     turns = frame.T @ changes[2 * size : 2 * size + 3]
     return np.concatenate([changes[:size] + turns[2], turns[:DIRECTIONS]])

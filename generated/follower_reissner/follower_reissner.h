@@ -55,8 +55,8 @@ void follower_reissner_unpack(const follower_reissner_real *inputs, follower_rei
 
 /* Ranges of the inputs by what they are, a tension not below zero and a length above, and by the bounds of the scene. The
    solver looks at none: a tension below zero pushes along its path, as no cable does, and the solution is one all the same.
-   in_range: 1 where every entry is in its range, 0 where one is not, or is no number. clamp moves every entry that is beyond
-   its range to the end of it and returns how many it moved; what is no number stays. */
+   in_range returns 1 where every entry is in its range, 0 where one is outside or is not a number. clamp moves every entry
+   outside its range to the nearer end of the range and returns how many it moved; entries that are not numbers stay. */
 int follower_reissner_in_range(const follower_reissner_real *inputs);
 int follower_reissner_clamp(follower_reissner_real *inputs);
 
@@ -119,7 +119,7 @@ typedef struct {
   int max_continuation_steps;   /* points between the last inputs and the new ones; default 20 */
 } follower_reissner_options;
 
-/* The members of the following structs are the solver's own. */
+/* The members of the following structs are for the solver alone. */
 typedef struct {
   follower_reissner_real factors[169];
   int pivots[FOLLOWER_REISSNER_UNKNOWNS];
@@ -141,8 +141,8 @@ typedef struct {
   follower_reissner_real t;
 } follower_reissner_path_point;
 
-/* Memory that a call works in; what it holds between two calls means nothing. Too large for many a stack: let it be
-   static, or a member of something that is. One for each thread. */
+/* Memory that a call works in; its content between two calls means nothing. It is too large for many a stack: make it
+   static, or a member of a static struct. Each thread needs one of its own. */
 typedef struct {
   follower_reissner_updated_jacobian updated_jacobians[2];
   follower_reissner_path_point points[3];
@@ -166,7 +166,7 @@ typedef struct {
   int kernel_integers[1];
 } follower_reissner_workspace;
 
-/* Its size, bytes; the function is for callers in other languages. */
+/* Size of a workspace, bytes; the function is for callers in other languages. */
 #define FOLLOWER_REISSNER_WORKSPACE_SIZE sizeof(follower_reissner_workspace)
 int follower_reissner_workspace_size(void);
 
@@ -183,14 +183,14 @@ typedef struct {
 const char *follower_reissner_status_text(follower_reissner_status status);
 const char *follower_reissner_status_label(follower_reissner_status status);
 
-/* Equilibrium for these inputs. x: in, a start; out, the solution. From all zeros the load is grown from the unloaded
-   scene. From anything else Newton is tried at the full load, and the unloaded scene where that strays or fails.
-   On anything but CONVERGED x is the last equilibrium on the way, at info->load_factor of the load; with UNRESOLVED it
-   is one of the discrete equations at the full load, not one of the rod. info may be null. */
+/* Equilibrium for these inputs. x: in, a start; out, the solution. From all zeros the load grows from the unloaded
+   scene. From any other x Newton is tried at the full load first; where it strays or fails, the load grows from zero.
+   For any status but CONVERGED x is the last equilibrium on the path, at info->load_factor of the load; with UNRESOLVED
+   it solves the discrete equations at the full load, but is no equilibrium of the rod. info may be null. */
 follower_reissner_status follower_reissner_solve(const follower_reissner_real *inputs, follower_reissner_real *x, follower_reissner_workspace *workspace,
                              follower_reissner_info *info);
 
-/* As follower_reissner_solve, but along the straight line from the inputs for which x is an equilibrium: it stays on the branch
+/* Like follower_reissner_solve, but along the straight line from the inputs for which x is an equilibrium: it stays on the branch
    of x. On anything but CONVERGED info->load_factor is the share of that line. */
 follower_reissner_status follower_reissner_follow(const follower_reissner_real *from, const follower_reissner_real *inputs, follower_reissner_real *x,
                               follower_reissner_workspace *workspace, follower_reissner_info *info);
@@ -202,8 +202,8 @@ int follower_reissner_solve_batch(int count, const follower_reissner_real *input
                         int workspace_count, follower_reissner_info *info);
 
 /* Derivatives of the solution at an equilibrium: d_x_d_inputs (UNKNOWNS x INPUTS) and d_poses_d_inputs (7 x INPUTS for
-   each rod: position, then quaternion). Either may be null. NOT_IN_EQUILIBRIUM where x is none, SINGULAR at a limit
-   or bifurcation point; nothing is written then. */
+   each rod: position, then quaternion). Either may be null. NOT_IN_EQUILIBRIUM where x is no equilibrium, SINGULAR at
+   a limit or bifurcation point; nothing is written then. */
 follower_reissner_status follower_reissner_solve_sensitivity(const follower_reissner_real *inputs, const follower_reissner_real *x,
                                          follower_reissner_real *d_x_d_inputs, follower_reissner_real *d_poses_d_inputs,
                                          follower_reissner_workspace *workspace);
@@ -214,12 +214,12 @@ follower_reissner_status follower_reissner_solve_sensitivity(const follower_reis
    Newton from x is tried first, with the Jacobian of the derivatives of the turn before; where no derivatives are asked
    for, with that of an earlier turn, as long as three iterations are enough with it. Where its strains and poses stray
    by more than a turn may move them, the straight line from the inputs of the last turn is followed. Where that does not
-   reach the inputs either, within the budget: LOST_TRACK, and the next turn may ask for something nearer, or
-   follower_reissner_recover be called. SINGULAR: the solution is at a limit or bifurcation point, or so far off that nothing is known
+   reach the inputs within the budget either, the status is LOST_TRACK: ask for nearer inputs in the next turn, or call
+   follower_reissner_recover. SINGULAR: the solution is at a limit or bifurcation point, or so far off that nothing is known
    of it to rounding, and has no derivatives; a turn that keeps its Jacobian does not look for that.
 
-   The result is that of info->status. On anything but CONVERGED x and memory are as they were: the last solution and what
-   belongs to it; info->load_factor is 0 then, and the derivatives mean nothing.
+   The function returns info->status. Any status but CONVERGED leaves x and memory as they were, with the last solution;
+   info->load_factor is 0 then, and the derivatives mean nothing.
 
    The work is bounded. For m = max_iterations and c = max_continuation_steps a call evaluates at most m + c + 2
    residuals, m + c + 2 Jacobians and c + 1 rates, and at the end the index of resolution and the derivatives
@@ -231,7 +231,7 @@ follower_reissner_status follower_reissner_track(const follower_reissner_real *i
 /* One turn of the way back, where follower_reissner_track has lost its track: from the last solution along the straight line to these
    inputs, as far as the budget reaches. x and memory move on with it: x is the equilibrium for memory->inputs after any
    status. CONVERGED: these are the inputs asked for, and follower_reissner_track goes on. LOST_TRACK: call again, with the inputs of
-   that time; info->load_factor is the share of this turn's line that was gone. LOAD_STALLED: the line does not lead
+   that time; info->load_factor is the share of this turn's line that was followed. LOAD_STALLED: the line does not lead
    there, there may be a limit point, a buckling load, or an obstacle or a rod in the way; other inputs may, and
    follower_reissner_solve from all zeros. NOT_IN_EQUILIBRIUM: nothing was tracked yet, or x is not what it was.
 
@@ -255,7 +255,7 @@ void follower_reissner_residual_jacobian(const follower_reissner_real *x, const 
 /* d_residual_d_inputs (UNKNOWNS x INPUTS). */
 void follower_reissner_input_jacobian(const follower_reissner_real *x, const follower_reissner_real *inputs, follower_reissner_real *d_residual_d_inputs,
                             follower_reissner_workspace *workspace);
-/* Tolerance of the scene: the wanted error of poses, over the length and in rad, and of lengths of cables over the length. */
+/* Tolerance of the scene: allowed error of poses, over the length and in rad, and of lengths of cables over the length. */
 #define FOLLOWER_REISSNER_TOLERANCE 0.0001
 
 /* Estimated error of an equilibrium x for these inputs, as info->error_estimate of follower_reissner_solve, at any time and for any

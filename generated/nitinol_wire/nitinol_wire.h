@@ -55,8 +55,8 @@ void nitinol_wire_unpack(const nitinol_wire_real *inputs, nitinol_wire_inputs *n
 
 /* Ranges of the inputs by what they are, a tension not below zero and a length above, and by the bounds of the scene. The
    solver looks at none: a tension below zero pushes along its path, as no cable does, and the solution is one all the same.
-   in_range: 1 where every entry is in its range, 0 where one is not, or is no number. clamp moves every entry that is beyond
-   its range to the end of it and returns how many it moved; what is no number stays. */
+   in_range returns 1 where every entry is in its range, 0 where one is outside or is not a number. clamp moves every entry
+   outside its range to the nearer end of the range and returns how many it moved; entries that are not numbers stay. */
 int nitinol_wire_in_range(const nitinol_wire_real *inputs);
 int nitinol_wire_clamp(nitinol_wire_real *inputs);
 
@@ -116,7 +116,7 @@ typedef struct {
   int max_continuation_steps;   /* points between the last inputs and the new ones; default 20 */
 } nitinol_wire_options;
 
-/* The members of the following structs are the solver's own. */
+/* The members of the following structs are for the solver alone. */
 typedef struct {
   nitinol_wire_real factors[49];
   int pivots[NITINOL_WIRE_UNKNOWNS];
@@ -138,8 +138,8 @@ typedef struct {
   nitinol_wire_real t;
 } nitinol_wire_path_point;
 
-/* Memory that a call works in; what it holds between two calls means nothing. Too large for many a stack: let it be
-   static, or a member of something that is. One for each thread. */
+/* Memory that a call works in; its content between two calls means nothing. It is too large for many a stack: make it
+   static, or a member of a static struct. Each thread needs one of its own. */
 typedef struct {
   nitinol_wire_updated_jacobian updated_jacobians[2];
   nitinol_wire_path_point points[3];
@@ -163,7 +163,7 @@ typedef struct {
   int kernel_integers[1];
 } nitinol_wire_workspace;
 
-/* Its size, bytes; the function is for callers in other languages. */
+/* Size of a workspace, bytes; the function is for callers in other languages. */
 #define NITINOL_WIRE_WORKSPACE_SIZE sizeof(nitinol_wire_workspace)
 int nitinol_wire_workspace_size(void);
 
@@ -180,14 +180,14 @@ typedef struct {
 const char *nitinol_wire_status_text(nitinol_wire_status status);
 const char *nitinol_wire_status_label(nitinol_wire_status status);
 
-/* Equilibrium for these inputs. x: in, a start; out, the solution. From all zeros the load is grown from the unloaded
-   scene. From anything else Newton is tried at the full load, and the unloaded scene where that strays or fails.
-   On anything but CONVERGED x is the last equilibrium on the way, at info->load_factor of the load; with UNRESOLVED it
-   is one of the discrete equations at the full load, not one of the rod. info may be null. */
+/* Equilibrium for these inputs. x: in, a start; out, the solution. From all zeros the load grows from the unloaded
+   scene. From any other x Newton is tried at the full load first; where it strays or fails, the load grows from zero.
+   For any status but CONVERGED x is the last equilibrium on the path, at info->load_factor of the load; with UNRESOLVED
+   it solves the discrete equations at the full load, but is no equilibrium of the rod. info may be null. */
 nitinol_wire_status nitinol_wire_solve(const nitinol_wire_real *inputs, nitinol_wire_real *x, nitinol_wire_workspace *workspace,
                              nitinol_wire_info *info);
 
-/* As nitinol_wire_solve, but along the straight line from the inputs for which x is an equilibrium: it stays on the branch
+/* Like nitinol_wire_solve, but along the straight line from the inputs for which x is an equilibrium: it stays on the branch
    of x. On anything but CONVERGED info->load_factor is the share of that line. */
 nitinol_wire_status nitinol_wire_follow(const nitinol_wire_real *from, const nitinol_wire_real *inputs, nitinol_wire_real *x,
                               nitinol_wire_workspace *workspace, nitinol_wire_info *info);
@@ -199,8 +199,8 @@ int nitinol_wire_solve_batch(int count, const nitinol_wire_real *inputs, nitinol
                         int workspace_count, nitinol_wire_info *info);
 
 /* Derivatives of the solution at an equilibrium: d_x_d_inputs (UNKNOWNS x INPUTS) and d_poses_d_inputs (7 x INPUTS for
-   each rod: position, then quaternion). Either may be null. NOT_IN_EQUILIBRIUM where x is none, SINGULAR at a limit
-   or bifurcation point; nothing is written then. */
+   each rod: position, then quaternion). Either may be null. NOT_IN_EQUILIBRIUM where x is no equilibrium, SINGULAR at
+   a limit or bifurcation point; nothing is written then. */
 nitinol_wire_status nitinol_wire_solve_sensitivity(const nitinol_wire_real *inputs, const nitinol_wire_real *x,
                                          nitinol_wire_real *d_x_d_inputs, nitinol_wire_real *d_poses_d_inputs,
                                          nitinol_wire_workspace *workspace);
@@ -211,12 +211,12 @@ nitinol_wire_status nitinol_wire_solve_sensitivity(const nitinol_wire_real *inpu
    Newton from x is tried first, with the Jacobian of the derivatives of the turn before; where no derivatives are asked
    for, with that of an earlier turn, as long as three iterations are enough with it. Where its strains and poses stray
    by more than a turn may move them, the straight line from the inputs of the last turn is followed. Where that does not
-   reach the inputs either, within the budget: LOST_TRACK, and the next turn may ask for something nearer, or
-   nitinol_wire_recover be called. SINGULAR: the solution is at a limit or bifurcation point, or so far off that nothing is known
+   reach the inputs within the budget either, the status is LOST_TRACK: ask for nearer inputs in the next turn, or call
+   nitinol_wire_recover. SINGULAR: the solution is at a limit or bifurcation point, or so far off that nothing is known
    of it to rounding, and has no derivatives; a turn that keeps its Jacobian does not look for that.
 
-   The result is that of info->status. On anything but CONVERGED x and memory are as they were: the last solution and what
-   belongs to it; info->load_factor is 0 then, and the derivatives mean nothing.
+   The function returns info->status. Any status but CONVERGED leaves x and memory as they were, with the last solution;
+   info->load_factor is 0 then, and the derivatives mean nothing.
 
    The work is bounded. For m = max_iterations and c = max_continuation_steps a call evaluates at most m + c + 2
    residuals, m + c + 2 Jacobians and c + 1 rates, and at the end the index of resolution and the derivatives
@@ -228,7 +228,7 @@ nitinol_wire_status nitinol_wire_track(const nitinol_wire_real *inputs, nitinol_
 /* One turn of the way back, where nitinol_wire_track has lost its track: from the last solution along the straight line to these
    inputs, as far as the budget reaches. x and memory move on with it: x is the equilibrium for memory->inputs after any
    status. CONVERGED: these are the inputs asked for, and nitinol_wire_track goes on. LOST_TRACK: call again, with the inputs of
-   that time; info->load_factor is the share of this turn's line that was gone. LOAD_STALLED: the line does not lead
+   that time; info->load_factor is the share of this turn's line that was followed. LOAD_STALLED: the line does not lead
    there, there may be a limit point, a buckling load, or an obstacle or a rod in the way; other inputs may, and
    nitinol_wire_solve from all zeros. NOT_IN_EQUILIBRIUM: nothing was tracked yet, or x is not what it was.
 
@@ -252,7 +252,7 @@ void nitinol_wire_residual_jacobian(const nitinol_wire_real *x, const nitinol_wi
 /* d_residual_d_inputs (UNKNOWNS x INPUTS). */
 void nitinol_wire_input_jacobian(const nitinol_wire_real *x, const nitinol_wire_real *inputs, nitinol_wire_real *d_residual_d_inputs,
                             nitinol_wire_workspace *workspace);
-/* Tolerance of the scene: the wanted error of poses, over the length and in rad, and of lengths of cables over the length. */
+/* Tolerance of the scene: allowed error of poses, over the length and in rad, and of lengths of cables over the length. */
 #define NITINOL_WIRE_TOLERANCE 0.0001
 
 /* Estimated error of an equilibrium x for these inputs, as info->error_estimate of nitinol_wire_solve, at any time and for any

@@ -55,8 +55,8 @@ void planar_strip_unpack(const planar_strip_real *inputs, planar_strip_inputs *n
 
 /* Ranges of the inputs by what they are, a tension not below zero and a length above, and by the bounds of the scene. The
    solver looks at none: a tension below zero pushes along its path, as no cable does, and the solution is one all the same.
-   in_range: 1 where every entry is in its range, 0 where one is not, or is no number. clamp moves every entry that is beyond
-   its range to the end of it and returns how many it moved; what is no number stays. */
+   in_range returns 1 where every entry is in its range, 0 where one is outside or is not a number. clamp moves every entry
+   outside its range to the nearer end of the range and returns how many it moved; entries that are not numbers stay. */
 int planar_strip_in_range(const planar_strip_real *inputs);
 int planar_strip_clamp(planar_strip_real *inputs);
 
@@ -114,7 +114,7 @@ typedef struct {
   int max_continuation_steps;   /* points between the last inputs and the new ones; default 20 */
 } planar_strip_options;
 
-/* The members of the following structs are the solver's own. */
+/* The members of the following structs are for the solver alone. */
 typedef struct {
   planar_strip_real factors[16];
   int pivots[PLANAR_STRIP_UNKNOWNS];
@@ -136,8 +136,8 @@ typedef struct {
   planar_strip_real t;
 } planar_strip_path_point;
 
-/* Memory that a call works in; what it holds between two calls means nothing. Too large for many a stack: let it be
-   static, or a member of something that is. One for each thread. */
+/* Memory that a call works in; its content between two calls means nothing. It is too large for many a stack: make it
+   static, or a member of a static struct. Each thread needs one of its own. */
 typedef struct {
   planar_strip_updated_jacobian updated_jacobians[2];
   planar_strip_path_point points[3];
@@ -161,7 +161,7 @@ typedef struct {
   int kernel_integers[1];
 } planar_strip_workspace;
 
-/* Its size, bytes; the function is for callers in other languages. */
+/* Size of a workspace, bytes; the function is for callers in other languages. */
 #define PLANAR_STRIP_WORKSPACE_SIZE sizeof(planar_strip_workspace)
 int planar_strip_workspace_size(void);
 
@@ -178,14 +178,14 @@ typedef struct {
 const char *planar_strip_status_text(planar_strip_status status);
 const char *planar_strip_status_label(planar_strip_status status);
 
-/* Equilibrium for these inputs. x: in, a start; out, the solution. From all zeros the load is grown from the unloaded
-   scene. From anything else Newton is tried at the full load, and the unloaded scene where that strays or fails.
-   On anything but CONVERGED x is the last equilibrium on the way, at info->load_factor of the load; with UNRESOLVED it
-   is one of the discrete equations at the full load, not one of the rod. info may be null. */
+/* Equilibrium for these inputs. x: in, a start; out, the solution. From all zeros the load grows from the unloaded
+   scene. From any other x Newton is tried at the full load first; where it strays or fails, the load grows from zero.
+   For any status but CONVERGED x is the last equilibrium on the path, at info->load_factor of the load; with UNRESOLVED
+   it solves the discrete equations at the full load, but is no equilibrium of the rod. info may be null. */
 planar_strip_status planar_strip_solve(const planar_strip_real *inputs, planar_strip_real *x, planar_strip_workspace *workspace,
                              planar_strip_info *info);
 
-/* As planar_strip_solve, but along the straight line from the inputs for which x is an equilibrium: it stays on the branch
+/* Like planar_strip_solve, but along the straight line from the inputs for which x is an equilibrium: it stays on the branch
    of x. On anything but CONVERGED info->load_factor is the share of that line. */
 planar_strip_status planar_strip_follow(const planar_strip_real *from, const planar_strip_real *inputs, planar_strip_real *x,
                               planar_strip_workspace *workspace, planar_strip_info *info);
@@ -197,8 +197,8 @@ int planar_strip_solve_batch(int count, const planar_strip_real *inputs, planar_
                         int workspace_count, planar_strip_info *info);
 
 /* Derivatives of the solution at an equilibrium: d_x_d_inputs (UNKNOWNS x INPUTS) and d_poses_d_inputs (7 x INPUTS for
-   each rod: position, then quaternion). Either may be null. NOT_IN_EQUILIBRIUM where x is none, SINGULAR at a limit
-   or bifurcation point; nothing is written then. */
+   each rod: position, then quaternion). Either may be null. NOT_IN_EQUILIBRIUM where x is no equilibrium, SINGULAR at
+   a limit or bifurcation point; nothing is written then. */
 planar_strip_status planar_strip_solve_sensitivity(const planar_strip_real *inputs, const planar_strip_real *x,
                                          planar_strip_real *d_x_d_inputs, planar_strip_real *d_poses_d_inputs,
                                          planar_strip_workspace *workspace);
@@ -209,12 +209,12 @@ planar_strip_status planar_strip_solve_sensitivity(const planar_strip_real *inpu
    Newton from x is tried first, with the Jacobian of the derivatives of the turn before; where no derivatives are asked
    for, with that of an earlier turn, as long as three iterations are enough with it. Where its strains and poses stray
    by more than a turn may move them, the straight line from the inputs of the last turn is followed. Where that does not
-   reach the inputs either, within the budget: LOST_TRACK, and the next turn may ask for something nearer, or
-   planar_strip_recover be called. SINGULAR: the solution is at a limit or bifurcation point, or so far off that nothing is known
+   reach the inputs within the budget either, the status is LOST_TRACK: ask for nearer inputs in the next turn, or call
+   planar_strip_recover. SINGULAR: the solution is at a limit or bifurcation point, or so far off that nothing is known
    of it to rounding, and has no derivatives; a turn that keeps its Jacobian does not look for that.
 
-   The result is that of info->status. On anything but CONVERGED x and memory are as they were: the last solution and what
-   belongs to it; info->load_factor is 0 then, and the derivatives mean nothing.
+   The function returns info->status. Any status but CONVERGED leaves x and memory as they were, with the last solution;
+   info->load_factor is 0 then, and the derivatives mean nothing.
 
    The work is bounded. For m = max_iterations and c = max_continuation_steps a call evaluates at most m + c + 2
    residuals, m + c + 2 Jacobians and c + 1 rates, and at the end the index of resolution and the derivatives
@@ -226,7 +226,7 @@ planar_strip_status planar_strip_track(const planar_strip_real *inputs, planar_s
 /* One turn of the way back, where planar_strip_track has lost its track: from the last solution along the straight line to these
    inputs, as far as the budget reaches. x and memory move on with it: x is the equilibrium for memory->inputs after any
    status. CONVERGED: these are the inputs asked for, and planar_strip_track goes on. LOST_TRACK: call again, with the inputs of
-   that time; info->load_factor is the share of this turn's line that was gone. LOAD_STALLED: the line does not lead
+   that time; info->load_factor is the share of this turn's line that was followed. LOAD_STALLED: the line does not lead
    there, there may be a limit point, a buckling load, or an obstacle or a rod in the way; other inputs may, and
    planar_strip_solve from all zeros. NOT_IN_EQUILIBRIUM: nothing was tracked yet, or x is not what it was.
 
@@ -250,7 +250,7 @@ void planar_strip_residual_jacobian(const planar_strip_real *x, const planar_str
 /* d_residual_d_inputs (UNKNOWNS x INPUTS). */
 void planar_strip_input_jacobian(const planar_strip_real *x, const planar_strip_real *inputs, planar_strip_real *d_residual_d_inputs,
                             planar_strip_workspace *workspace);
-/* Tolerance of the scene: the wanted error of poses, over the length and in rad, and of lengths of cables over the length. */
+/* Tolerance of the scene: allowed error of poses, over the length and in rad, and of lengths of cables over the length. */
 #define PLANAR_STRIP_TOLERANCE 0.0001
 
 /* Estimated error of an equilibrium x for these inputs, as info->error_estimate of planar_strip_solve, at any time and for any

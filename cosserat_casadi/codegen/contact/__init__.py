@@ -1,1 +1,1 @@
-"""Rods in exact contact in C: which arrangements of contacts, their equations, their sources, and back in Python."""
+"""Rods in exact contact in C: choice of arrangements of contacts, their equations and sources, and loading."""

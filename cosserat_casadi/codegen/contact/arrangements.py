@@ -1,7 +1,7 @@
-"""Which arrangements of contacts a library in C holds: all that its scene meets, and no contact.
+"""Choice of the arrangements of contacts in a C library: all that its scene meets, and the one without contact.
 
 The scene is solved at its own inputs and parameters, and followed from there to each load case, one after the other,
-along straight lines of both, as the solver in C moves them too. The arrangements on the way are collected.
+along straight lines of both, like the solver in C. The arrangements on the way are collected.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from cosserat_casadi.paths.contact_path import ContactPath, follow_contact_path
 from cosserat_casadi.paths.equilibrium_path import InputChange
 
 MOST_ARRANGEMENTS = 16
-"""Most arrangements of a library: each has its own equations."""
+"""Largest number of arrangements of a library; each has its own equations."""
 
 
 @dataclass(frozen=True)
@@ -35,15 +35,15 @@ class Chosen:
     """The arrangements of a library.
 
     Attributes:
-        scene: without contacts, and without the list of its parameters.
-        layout: its inputs.
-        parameters: numbers of the scene that the library is given behind the inputs; often none.
-        given: stacked inputs that the library starts from, and parameters behind them: of the scene.
-        equations: of each arrangement, at places where it was met.
-        richer: of each arrangement with modes and intervals added; none where no error is estimated.
-        start: number of the arrangement for these inputs.
-        z: unknowns, forces and places that solve its equations.
-        judges_stability: whether the library says which solutions are stable.
+        scene: the scene without contacts and without the list of its parameters.
+        layout: inputs of the scene.
+        parameters: numbers of the scene that the library takes after the inputs; often none.
+        given: stacked inputs and parameters of the scene, from which the library starts.
+        equations: equations of each arrangement, at places where it was met.
+        richer: equations of each arrangement with added modes and intervals; empty without error estimates.
+        start: index of the arrangement at the inputs of the scene.
+        z: unknowns, forces and places that solve the equations of that arrangement.
+        judges_stability: whether the library judges the stability of solutions.
     """
 
     scene: scenes.Scene
@@ -58,18 +58,18 @@ class Chosen:
 
     @property
     def tolerance(self) -> float:
-        """Depth and pull, relative, up to which an arrangement holds."""
+        """Largest relative depth and pull at which an arrangement is valid."""
         return max(self.scene.accuracy.tolerance, LEAST_TOLERANCE)
 
 
 @dataclass
 class _Met:
-    """The arrangements that were met.
+    """Collector of the arrangements that were met.
 
     Attributes:
-        scene: without contacts.
+        scene: the scene without contacts.
         grids: modes and nodes of every element.
-        states: by their discrete part.
+        states: states of contact, by their discrete parts.
     """
 
     scene: scenes.Scene
@@ -77,7 +77,7 @@ class _Met:
     states: dict[object, ContactState] = field(default_factory=dict)
 
     def add(self, state: ContactState) -> None:
-        """Add an arrangement, unless it is there."""
+        """Add an arrangement, unless it is known."""
         self.states.setdefault(self.key(state), state)
 
     def add_path(self, path: ContactPath) -> None:
@@ -89,7 +89,7 @@ class _Met:
                 self.add(arrangement.state(path.x[points[-1]]))
 
     def key(self, state: ContactState) -> object:
-        """The discrete part of an arrangement: who touches what, and between which ends of elements that stay."""
+        """Return the discrete part of an arrangement: who touches what, and between which fixed ends of elements."""
         loaded = with_contacts(self.scene, state, self.grids.bending_modes(self.scene))
         ends = []
         for name, discretisation in self.grids.discretisation(loaded).items():
@@ -98,7 +98,7 @@ class _Met:
         return state.signature, tuple(ends)
 
     def check(self) -> None:
-        """Refuse lines of contact that begin where the rod does or that a load inside them splits, and too many states.
+        """Refuse lines of contact that begin at the base or contain a load, and too many arrangements.
 
         Raises:
             ExportError: there are some.
@@ -131,14 +131,14 @@ def chosen_arrangements(
     leave_out: bool = False,
     stability: bool = False,
 ) -> Chosen:
-    """The arrangements that a scene meets, and no contact.
+    """Find the arrangements that a scene meets, and the one without contact.
 
     Args:
-        model: of a scene with obstacles.
-        load_cases: stacked inputs, a row for each case, shape (k, m), or with parameters behind them, (k, m + p).
+        model: model of a scene with obstacles.
+        load_cases: stacked inputs, a row for each case, shape (k, m), or with appended parameters, (k, m + p).
         estimate_errors: whether the library estimates the errors of its answers.
         leave_out: whether load cases without an equilibrium are left out, instead of refused.
-        stability: whether the library says which solutions are stable.
+        stability: whether the library judges the stability of solutions.
 
     Raises:
         ExportError: the scene has no equilibrium, a load case has none, there are too many arrangements, or a load acts
@@ -205,7 +205,7 @@ def _check(solution: Solution, what: str) -> None:
 
 
 def _z_of(equations: ContactEquations, near: Solution) -> FloatArray:
-    """Unknowns, forces and places of a solution in the equations of its arrangement."""
+    """Solve the equations of an arrangement for unknowns, forces and places, near a solution."""
     settling = Settling(equations.scene, equations.given, equations.grids, NewtonSettings(), LEAST_TOLERANCE)
     z = settling.solved(equations, near)
     if z is None:

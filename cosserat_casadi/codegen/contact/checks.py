@@ -1,4 +1,4 @@
-"""Parts of exact contact that cannot be exported: refused with a sentence before any work is done."""
+"""Refusal of parts of exact contact that cannot be exported, before any work is done."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ AT_REST = {
     "stability": "the stability of equilibria",
     "batches": "many equilibria",
 }
-"""Functions of equilibria, which a folder of motions in exact contact does not hold."""
+"""Functions of equilibria, which a folder of motions in exact contact does not contain."""
 
 REMEDY = "leave it out, or give each obstacle {width}"
 
 
 def check_contact(scene: scenes.Scene, asked: Mapping[str, bool]) -> None:
-    """Refuse what C does not have of a scene in exact contact.
+    """Refuse parts of a scene in exact contact that the C library does not support.
 
     Args:
         scene: the scene.
-        asked: which of the options of an export are asked for.
+        asked: whether each option of an export is requested, by option.
 
     Raises:
         ExportError: with every fault.
@@ -99,14 +99,14 @@ def _refused_parameters(scene: scenes.Scene) -> Iterator[Problem]:
 
 
 def check_load_cases(scene: scenes.Scene, load_cases: FloatArray | None) -> None:
-    """Refuse load cases of a scene without exact contact, and rows of the wrong length.
+    """Refuse load cases for a scene without exact contact, and rows of the wrong length.
 
     Args:
         scene: the scene.
-        load_cases: stacked inputs, a row for each case; parameters may stand behind them.
+        load_cases: stacked inputs, a row for each case; parameters may be appended.
 
     Raises:
-        ExportError: they are refused.
+        ExportError: the load cases are refused.
     """
     if load_cases is None:
         return

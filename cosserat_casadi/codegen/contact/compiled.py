@@ -1,4 +1,4 @@
-"""An exported folder of a scene in exact contact, compiled: the solver in C, from Python."""
+"""A compiled exported folder of a scene in exact contact: the solver in C, called from Python."""
 
 from __future__ import annotations
 
@@ -32,15 +32,15 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
 
 RATES = 4
-"""Rows of the derivatives of a contact: its two abscissae, and the forces there."""
+"""Number of rows of the derivatives of a contact: its two abscissae, and the forces there."""
 
 
 class Margins(NamedTuple):
-    """How near a solution is to other contacts, beyond which its derivatives by inputs do not hold.
+    """Margins of a solution from a change of contacts, where its derivatives by inputs cease to hold.
 
     Attributes:
-        force: the least with which a contact presses, relative to the largest force; infinite without contacts.
-        gap: the least distance from an obstacle, relative to the length, of sections away from contacts with it.
+        force: least force of a contact, over the largest force; infinite without contacts.
+        gap: least distance of sections from an obstacle, away from contacts with it, over the length.
     """
 
     force: float
@@ -48,7 +48,7 @@ class Margins(NamedTuple):
 
 
 class ContactInfo(AnswerInfo):
-    """The struct in C that says how a call ended: the members of every solve, then the members for contact."""
+    """The struct in C with the outcome of a call: the members of every solve, then the members for contact."""
 
     _fields_ = (
         ("arrangement", ctypes.c_int),
@@ -82,17 +82,17 @@ class CompiledContactSolution(CompiledAnswer):
     """A solution of the solver in C in exact contact.
 
     Attributes:
-        arrangement: number of the arrangement of contacts, in the order of the manifest.
+        arrangement: index of the arrangement of contacts, in the order of the manifest.
         tips: position and quaternion of the tip of each rod, shape (7,); none without a solution.
         bodies: position and quaternion of each body, shape (7,).
         contacts: who touches what, as in :class:`cosserat_casadi.Solution`.
-        actuators: of each its effort and what that works on, by their names, such as tension (N) and length (m).
-        tries: arrangements that were solved.
-        parts: parts of the way of the inputs.
-        derivatives: derivatives of the tip of each rod with the inputs, shape (7, m), where they were asked for.
-        body_derivatives: derivatives of each body with the inputs, shape (7, m), where they were asked for.
-        z: unknowns, forces and places of contact of the arrangement, without unit; empty without a solution.
-        state: what the next call begins with.
+        actuators: effort and conjugate of each actuator, by name, such as tension (N) and length (m).
+        tries: number of arrangements that were solved.
+        parts: number of parts of the path of the inputs.
+        derivatives: derivatives of the tip of each rod by the inputs, shape (7, m), if requested.
+        body_derivatives: derivatives of each body by the inputs, shape (7, m), if requested.
+        z: dimensionless unknowns, forces and places of contact of the arrangement; empty without a solution.
+        state: data with which the next call begins.
     """
 
     arrangement: int
@@ -114,19 +114,19 @@ class CompiledContact(LoadedLibrary):
 
     Attributes:
         library: the shared object.
-        manifest: what the folder says of itself.
+        manifest: contents of the folder, as data.
     """
 
     @staticmethod
     def is_sound(described: Any) -> bool:
-        """Whether the entries that are read of a manifest of exact contact are there."""
+        """Whether a manifest of exact contact has all entries that are read."""
         names = [*described["rods"], *described["obstacles"]]
         contacts = all(isinstance(entry["contacts"], list) for entry in described[ARRANGEMENTS])
         return contacts and all(isinstance(name, str) for name in names)
 
     @staticmethod
     def sizes(described: Mapping[str, Any]) -> dict[str, int]:
-        """Numbers of the arrangements and of the parameters by their macros."""
+        """Numbers of arrangements and of parameters, by their macros."""
         return {"ARRANGEMENTS": len(described[ARRANGEMENTS]), **LoadedLibrary.sizes(described)}
 
     @property
@@ -148,8 +148,8 @@ class CompiledContact(LoadedLibrary):
     def residual(self) -> list[ca.Function]:
         """Functions (z, inputs) ↦ residual of each arrangement, with exact first and second derivatives.
 
-        z is as in a solution: unknowns, forces and places of contact; parameters stand behind the inputs. Derivatives
-        of a solution follow from these, and hold while its contacts stay: see :meth:`margins`.
+        The argument z is that of a solution: unknowns, forces and places of contact; parameters are appended to the
+        inputs. The derivatives of a solution follow from these, and hold as long as its contacts: see :meth:`margins`.
 
         Raises:
             AttributeError: the folder was exported without derivatives.
@@ -166,7 +166,7 @@ class CompiledContact(LoadedLibrary):
         return self._externals("poses")
 
     def _externals(self, word: str) -> list[ca.Function]:
-        """A function of each arrangement, for CasADi."""
+        """Load a function of each arrangement for CasADi."""
         names = Names(self.manifest["name"], tuple(self.rods))
         if f"{names.name}_derivatives.c" not in self.manifest["files"]:
             raise AttributeError("export the folder with derivatives: export(..., derivatives=True)")
@@ -179,7 +179,7 @@ class CompiledContact(LoadedLibrary):
         return [entry["contacts"] for entry in self.manifest[ARRANGEMENTS]]
 
     def start(self) -> CompiledContactSolution:
-        """The solution of the scene's own inputs."""
+        """Return the solution at the inputs of the scene."""
         state = self._room()
         self._function("start")(state)
         info = ContactInfo(load_factor=1.0, error_estimate=-1.0)
@@ -192,13 +192,13 @@ class CompiledContact(LoadedLibrary):
         *,
         parameters: ArgumentValues = None,
     ) -> CompiledContactSolution:
-        """Equilibrium by the solver in C.
+        """Solve for an equilibrium in C.
 
         Args:
-            inputs: the scene's own by default.
-            start: a solution from which the inputs move on; by default, and where the way from it does not lead to the
-                inputs, the solution at the scene's own inputs.
-            parameters: by name or stacked; the scene's own by default.
+            inputs: inputs by name or stacked; by default those of the scene.
+            start: a solution from which the inputs move; by default, and if no path leads from it to the inputs, the
+                solution at the inputs of the scene.
+            parameters: parameters by name or stacked; by default those of the scene.
         """
         given = self._given(inputs, parameters)
         state = self._room() if start is None else self._state(start)
@@ -208,7 +208,7 @@ class CompiledContact(LoadedLibrary):
         return self._answer(state, info, solved=outcome in SOLVED)
 
     def solve_batch(self, inputs: npt.ArrayLike, *, parameters: ArgumentValues = None) -> list[CompiledContactSolution]:
-        """Equilibria of many load cases, each by itself from the solution of the scene's own inputs.
+        """Solve for equilibria of many load cases, each separately from the solution at the inputs of the scene.
 
         Args:
             inputs: shape (count, size of the inputs), or one row for all.
@@ -241,14 +241,14 @@ class CompiledContact(LoadedLibrary):
         max_iterations: int | None = None,
         max_parts: int | None = None,
     ) -> CompiledContactSolution:
-        """One turn of a control loop: the solution and its derivatives, in bounded work.
+        """Compute one turn of a control loop: the solution and its derivatives, in bounded work.
 
         Args:
-            inputs: of the turn.
+            inputs: inputs of the turn.
             start: the solution of the turn before.
-            parameters: by name or stacked; the scene's own by default.
-            max_iterations: most Newton steps; by default what the header says.
-            max_parts: most parts of the way of the inputs; by default what the header says.
+            parameters: parameters by name or stacked; by default those of the scene.
+            max_iterations: most Newton steps; by default as in the header.
+            max_parts: most parts of the path of the inputs; by default as in the header.
 
         Raises:
             ValueError: one budget is given without the other.
@@ -267,31 +267,31 @@ class CompiledContact(LoadedLibrary):
         return self._answer(state, info, columns if solved else None, solved=solved)
 
     def sensitivity(self, solution: CompiledContactSolution) -> dict[str, FloatArray] | None:
-        """The d(position, quaternion)/d(inputs, parameters) of each tip, shape (7, m); None where there are none."""
+        """Return d(position, quaternion)/d(inputs, parameters) of each tip, shape (7, m); None without derivatives."""
         columns = self._by_all("solve_sensitivity", solution, self._posed, POSE_SIZE)
         return None if columns is None else by_tip(self.rods, columns[: len(self.rods)])
 
     def contact_sensitivity(self, solution: CompiledContactSolution) -> list[FloatArray] | None:
-        """The d(start, end, both forces)/d(inputs, parameters) of each contact, shape (4, m); or None."""
+        """Return d(start, end, both forces)/d(inputs, parameters) of each contact, shape (4, m); or None."""
         columns = self._by_all("contact_sensitivity", solution, len(solution.contacts), RATES)
         return None if columns is None else [own.T for own in columns]
 
     def _by_all(self, word: str, solution: CompiledContactSolution, count: int, rows: int) -> FloatArray | None:
-        """Derivatives by inputs, then by parameters, shape (count, m, rows); None where a function in C has none."""
+        """Return derivatives by inputs, then by parameters, shape (count, m, rows); None if a C function has none."""
         by_inputs, by_parameters = (np.zeros((count, of.size, rows)) for of in (self.inputs, self.parameters))
         columns = [pointer(own) for own in (by_inputs, *([by_parameters] if self.parameters.size else []))]
         status = self._function(word)(self._state(solution), *columns, self._workspace())
         return None if status != 0 else np.concatenate([by_inputs, by_parameters], axis=1)
 
     def margins(self, solution: CompiledContactSolution) -> Margins | None:
-        """How near a solution is to other contacts; None where it is no solution."""
+        """Return how near a solution is to a change of contacts; None without a solution."""
         force, gap = ctypes.c_double(), ctypes.c_double()
         state = self._state(solution)
         status = self._function("margins")(state, ctypes.byref(force), ctypes.byref(gap), self._workspace())
         return None if status != 0 else Margins(force.value, gap.value)
 
     def stability(self, solution: CompiledContactSolution) -> CompiledStability | None:
-        """Whether a solution is stable, for loads with a potential; None where it is no solution.
+        """Judge the stability of a solution, for loads with a potential; None without a solution.
 
         Raises:
             AttributeError: the folder was exported without stability.
@@ -299,7 +299,7 @@ class CompiledContact(LoadedLibrary):
         return self._judged(self._state(solution))
 
     def error_estimate(self, solution: CompiledContactSolution) -> float | None:
-        """Estimated error of a solution, such as one of a turn; None where it is none.
+        """Estimate the error of a solution, such as one of a turn; None without a solution.
 
         Raises:
             AttributeError: the folder was exported without the estimate.
@@ -334,14 +334,14 @@ class CompiledContact(LoadedLibrary):
         )
 
     def _z(self, state: Any) -> FloatArray:
-        """Third member of the state, z, as long as the state's arrangement makes it."""
+        """Third member z of the state, with the length that the arrangement has."""
         own = self.manifest[ARRANGEMENTS][self._arrangement_of(state)]
         size = own["unknowns"] + own["forces"] + own["places"]
         # Two whole numbers come before it.
         return np.frombuffer(bytes(state), dtype=float, count=size, offset=2 * ctypes.sizeof(ctypes.c_int)).copy()
 
     def _arrangement_of(self, state: Any) -> int:
-        """Second member of the state."""
+        """Second member of the state, the index of the arrangement."""
         return int(ctypes.cast(state, ctypes.POINTER(ctypes.c_int))[1])
 
     def _poses(self, state: Any) -> FloatArray:
@@ -379,7 +379,7 @@ class CompiledContact(LoadedLibrary):
         return tuple(contacts)
 
     def _room(self) -> Any:
-        """A state without a solution."""
+        """Allocate a state, without a solution."""
         return room(self._function("state_size")())
 
     def _state(self, solution: CompiledContactSolution) -> Any:

@@ -1,4 +1,4 @@
-"""The equations of arrangements of contacts as functions for C: of z = (x, f, p) and of the inputs."""
+"""The equations of arrangements of contacts as functions for C, of z = (x, f, p) and of the inputs."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ ACTUATORS = "actuators"
 """Further kernel of a scene that has actuators."""
 
 WATCHED = "watched"
-"""Further kernel where errors are estimated: the poses and lengths whose errors are estimated."""
+"""Further kernel for error estimates: the poses and lengths whose errors are estimated."""
 
 BENDS = "bends"
 """Further kernel of a library that judges stability."""
@@ -50,8 +50,8 @@ class ArrangementKernels:
     """The kernels of one arrangement.
 
     Attributes:
-        equations: of the arrangement.
-        name: beginning of their names.
+        equations: equations of the arrangement.
+        name: prefix of the names of the kernels.
         words: the kernels that are wanted.
     """
 
@@ -81,12 +81,12 @@ class ArrangementKernels:
         return [kernels[word]() for word in self.words]
 
     def differentiable(self) -> Iterator[ca.Function]:
-        """Residual and poses, each with its derivatives, named as ``casadi.external`` looks for them."""
+        """Residual and poses, each with its derivatives, by the names for which ``casadi.external`` searches."""
         for word, result in (("residual", self._written.residual), ("poses", self._tips())):
             yield from with_derivatives(self.written_kernel(word, [result]))
 
     def _jacobian(self) -> Kernel:
-        """The Jacobian, by columns where it has such a form that is not too long."""
+        """The Jacobian, by columns if such a form exists and is not too long."""
         whole = self._of_z([self._by_z(self._written.jacobian)])
         name = f"{self.name}_jacobian"
         columned = by_columns(self._written_jacobian, whole, name)
@@ -103,16 +103,16 @@ class ArrangementKernels:
         return WrittenJacobian(arguments, written.system, of_system, self._gathered, ("z", "inputs"))
 
     def _by_z(self, jacobian: Matrix) -> Matrix:
-        """The columns of a Jacobian that are of z, behind which columns of parameters stand."""
+        """Select the columns of a Jacobian by z, which precede the columns by parameters."""
         count = self.equations.parameters.size
         return jacobian[:, :-count] if count else jacobian
 
     def written_kernel(self, word: str, results: Sequence[Matrix]) -> ca.Function:
-        """A function of z and of the inputs, from expressions of the written equations; with dense results."""
+        """Make a function of z and the inputs, with dense results, from expressions of the written equations."""
         return kernel(self.equations.nominal.model, self._of_z(results), f"{self.name}_{word}")
 
     def _rate_kernel(self, word: str, result: Matrix) -> ca.Function:
-        """Derivative of a result along a direction of z and of the inputs."""
+        """Make the derivative of a result along a direction of z and of the inputs."""
         of_z = self._of_z([result])
         symbols = of_z.mx_in()
         # Of a scene without inputs the symbol of these is empty, and has no name.
@@ -123,15 +123,15 @@ class ArrangementKernels:
         return kernel(self.equations.nominal.model, whole, f"{self.name}_{word}")
 
     def _of_z(self, results: Sequence[Matrix]) -> ca.Function:
-        """(z, inputs) ↦ results."""
+        """Make the function (z, inputs) ↦ results."""
         names = [f"result_{number}" for number in range(len(results))]
         words = ["x", "f", "p", "inputs"]
         return self._gathered(ca.Function("of_z", self._written.arguments, list(results), words, names))
 
     def _gathered(self, function: ca.Function) -> ca.Function:
-        """A function of x, f, p, the inputs, and of more behind them, as one of z, the inputs and these.
+        """Turn a function of x, f, p, the inputs and further arguments into a function of z, the inputs and these.
 
-        Parameters of the scene, which p has behind the places, stand behind the inputs then.
+        Parameters of the scene, which follow the places in p, are then appended to the inputs.
         """
         words = function.name_in()
         count = self.equations.parameters.size
@@ -150,7 +150,7 @@ class ArrangementKernels:
         return ca.Function(function.name(), [z, *behind], results, ["z", *words[len(sizes) :]], function.name_out())
 
     def _nodes(self) -> Matrix:
-        """Positions of the nodes of all rods, one after the other, and of bodies that may touch, 3×M, m."""
+        """Positions of the nodes of all rods, rod by rod, and of bodies that may touch, 3×M, m."""
         system = self._written.system
         positions = [system.nodes(name) for name in system.shapes]
         scene = system.discrete.scene
@@ -159,7 +159,7 @@ class ArrangementKernels:
         return ca.horzcat(*positions)
 
     def _indices(self) -> Matrix:
-        """Index of resolution, and the least margins of paths, of planes and of laws; one where there is none."""
+        """Index of resolution, and the least margins of paths, of planes and of laws; 1 for an absent margin."""
         system = self._written.system
         symbols = {"x": ca.MX(system.arguments.x), "inputs": ca.MX(system.arguments.inputs)}
         index = resolution_index(Expressions(system.discrete, "", symbols))
@@ -182,13 +182,13 @@ class ArrangementKernels:
         return ca.vertcat(*poses)
 
     def _actuators(self) -> list[Matrix]:
-        """Efforts of all actuators, and what these work on."""
+        """Efforts of all actuators, and their conjugates."""
         system = self._written.system
         states = [system.actuators.state(actuator.name) for actuator in system.discrete.scene.actuators]
         return [ca.vertcat(*[state[place] for state in states]) for place in range(2)]
 
     def _point_forces(self) -> Matrix:
-        """Force at the end, or at both ends, of every contact, N, two numbers for each."""
+        """Force at the point, or at both ends, of every contact, N, two numbers for each."""
         forces: list[Matrix] = [ca.MX(0, 1)]
         for touch, ends, _ in self._forces():
             own = self._unit(touch) * ends
@@ -212,7 +212,7 @@ class ArrangementKernels:
         return ca.vertcat(*forces)
 
     def _resultant_along(self, touch: Touch, line: Matrix) -> Matrix:
-        """∫ λ n over a stretch of contact."""
+        """Resultant ∫ λ n over a line of contact, 3×1."""
         grid = self._written.system.discrete.rods[touch.owner].grid
         nodes = grid.nodes_in(touch.start, touch.end)
         local = (grid.nodes_at(nodes) - touch.start) / (touch.end - touch.start)
@@ -228,13 +228,13 @@ class ArrangementKernels:
         return normals @ (lengths * along)
 
     def _normal(self, touch: Touch, node: int) -> Matrix:
-        """Normal of the obstacle at a node of the rod that touches it."""
+        """Normal of the obstacle at a node of the rod that touches it, 3×1."""
         obstacle = obstacle_of(self._written.system.discrete.scene, touch.obstacle)
         normal: Matrix = surface(obstacle)(self._written.system.position_at(touch.owner, node))[1]
         return normal
 
     def _bends(self) -> Matrix:
-        """Second derivative of the gap with X at the beginning of every contact, over the length."""
+        """Second derivative of the gap by X at the beginning of every contact, over the length."""
         bends: list[Matrix] = [ca.MX(0, 1)]
         for touch in self._written.state.touches:
             if touch.of_body:
@@ -269,7 +269,7 @@ class ArrangementKernels:
         return normal
 
     def _forces(self) -> Iterator[tuple[Touch, Matrix, Matrix]]:
-        """Each contact, the forces at its ends and the coefficients of that along it, without unit."""
+        """Each contact, the forces at its ends and the coefficients of the force along it, dimensionless."""
         _, f, _ = self._written.unknowns
         return self._written.state.with_forces(f, self._written.modes)
 

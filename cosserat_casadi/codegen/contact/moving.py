@@ -1,4 +1,4 @@
-"""The words of the sources of steps in exact contact: what may touch what, the functions of points and surfaces."""
+"""Words in the templates of steps in exact contact: pairs that may touch, functions of points and surfaces."""
 
 from __future__ import annotations
 
@@ -37,17 +37,17 @@ CONTACT_FILES = (
 """Files of the folder ``c`` that a library with steps in exact contact includes."""
 
 FRICTION_FILES = ("contact_friction.c", "friction_sensitivity.c")
-"""Files of the folder ``c`` that such a library includes where something rubs."""
+"""Files of the folder ``c`` that such a library includes with friction."""
 
 ROD_FILES = ("struck_rods.h", "struck_rods.c")
 """Files of the folder ``c`` that such a library includes where rods may touch rods."""
 
 FEWEST_TOUCHES = 8
-"""Sections of a rod that slide on an obstacle, at most."""
+"""Least number of contacts of a rod with an obstacle for which arrays have room."""
 
 
 def contact_functions(model: Model, names: Names) -> dict[str, ca.Function]:
-    """Functions of the points that may touch, then surfaces of the obstacles, by their names in C."""
+    """Functions of the points that may touch, then of the surfaces of obstacles, by their names in C."""
     found: dict[str, ca.Function] = {}
     for number, points in enumerate(points_of(struck_in_steps(model))):
         found |= {f"{_stem(names, number)}_{word}": function for word, function in points.in_steps.items()}
@@ -64,7 +64,7 @@ def contact_functions(model: Model, names: Names) -> dict[str, ca.Function]:
 
 
 def contact_words(model: Model, names: Names) -> Words:
-    """Words of a library on what its steps keep apart; sizes of its arrays.
+    """Words of a library about pairs that its steps keep apart, and sizes of its arrays.
 
     Args:
         model: the exported model, with its motion.
@@ -111,7 +111,7 @@ def contact_words(model: Model, names: Names) -> Words:
 
 
 def contact_pattern(model: Model) -> ca.Sparsity:
-    """Pairs of unknowns by which the gap of something that touches has a second derivative."""
+    """Sparsity of the second derivatives of gaps by the unknowns."""
     together = np.zeros((model.size, model.size), dtype=bool)
     for points in points_of(struck_in_steps(model)):
         positions = points.in_steps["positions"]
@@ -125,7 +125,7 @@ def contact_pattern(model: Model) -> ca.Sparsity:
 
 
 def _described(facing: Facing) -> dict[str, str]:
-    """A pair for the manifest."""
+    """Describe a pair for the manifest."""
     if isinstance(facing, StopFacing):
         return {"joint": facing.owner, "stop": facing.touched}
     if isinstance(facing, RodsFacing):
@@ -139,12 +139,12 @@ def _words_of(facing: Facing) -> str:
 
 
 def contact_reals(size: int, inputs: int, words: Words) -> int:
-    """Numbers that the workspace has for contact, of 8 bytes as numbers of touches are counted.
+    """Size of the contact part of the workspace, in numbers of 8 bytes.
 
     Args:
         size: number of unknowns.
         inputs: number of inputs.
-        words: of the library.
+        words: words of the library.
     """
     if not words["steps_in_contact"]:
         return 0
@@ -165,7 +165,7 @@ def contact_reals(size: int, inputs: int, words: Words) -> int:
 
 
 def described_contact(model: Model) -> dict[str, Any]:
-    """Entries of the manifest: who may touch what, in the order of the numbers in C, and most sections that touch."""
+    """Entries of the manifest: pairs that may touch, in the order of their indices in C, and most touching sections."""
     faces = struck_in_steps(model)
     if not faces:
         return {}
@@ -175,12 +175,12 @@ def described_contact(model: Model) -> dict[str, Any]:
 
 
 def _most_touches(faces: Sequence[Facing]) -> int:
-    """Sections that may touch at once: of a rod those at which it lies, if they are more than slide."""
+    """Most contacts at once: for each rod its holding sections while it lies, or FEWEST_TOUCHES if that is more."""
     return min(MOST_TOUCHES, sum(1 if own.of_body else max(FEWEST_TOUCHES, len(own.laid_at)) for own in faces))
 
 
 def start_shape(model: Model) -> FloatArray:
-    """Unknowns at the start of the scene's motion, at rest, with the scene's parameters, shape (size,).
+    """Solve for the unknowns at the start of the scene's motion, at rest, with the scene's parameters, shape (size,).
 
     Raises:
         ExportError: the scene begins in an equilibrium, and none is found.
@@ -194,7 +194,7 @@ def start_shape(model: Model) -> FloatArray:
 
 
 def _functions(model: Model, names: Names) -> Iterator[str]:
-    """Calls of the kernels."""
+    """Write the calls of the kernels."""
     for number, points in enumerate(points_of(struck_in_steps(model))):
         words = {"number": number, "stem": _stem(names, number), "moved_by_inputs": "by_inputs" in points.in_steps}
         yield render("points_in_motion.c.in", words)
@@ -208,7 +208,7 @@ def _functions(model: Model, names: Names) -> Iterator[str]:
 
 
 def _tables(model: Model, faces: list[Facing]) -> Iterator[str]:
-    """Tables of points, and of pairs of a rod or body and an obstacle."""
+    """Write the tables of points, and of pairs of a rod or body and an obstacle."""
     points = points_of(struck_in_steps(model))
     words = ("positions", "velocities", "gradient", "hessian")
     records = []
@@ -294,5 +294,5 @@ def _obstacles(model: Model) -> list[scenes.ObstacleRecord]:
 
 
 def _stem(names: Names, number: int) -> str:
-    """Beginning of the names of the kernels of some points."""
+    """Prefix of the names of the kernels of some points."""
     return names.kernel(f"points_{number}")

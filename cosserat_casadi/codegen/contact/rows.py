@@ -1,4 +1,4 @@
-"""Rods in exact contact as C that answers rows of inputs with rows of results, for sweeps."""
+"""C library of rods in exact contact that maps rows of inputs to rows of results, for sweeps."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ from cosserat_casadi.model.build import Model
 def contact_row_library(
     model: Model, load_cases: FloatArray, *, estimate_errors: bool, stability: bool = False
 ) -> RowLibrary:
-    """Sources of the solver of a scene in exact contact with a function for rows.
+    """Write sources of the solver of a scene in exact contact with a function for rows.
 
     Args:
-        model: on the discretisation of all rows.
-        load_cases: stacked inputs with parameters behind them, a row for each case, shape (k, m): the library knows the
-            arrangements of contacts that it meets on the way from the scene's own inputs and parameters to each case
-            that has an equilibrium, one after the other.
+        model: model on the discretisation of all rows.
+        load_cases: stacked inputs with appended parameters, a row for each case, shape (k, m). The library contains the
+            arrangements of contacts on the path from the scene's own inputs and parameters to each case with an
+            equilibrium in turn.
         estimate_errors: whether rows have :data:`cosserat_casadi.codegen.rows.ERRORS`.
-        stability: whether they end with :data:`cosserat_casadi.codegen.rows.STABILITY`.
+        stability: whether rows end with :data:`cosserat_casadi.codegen.rows.STABILITY`.
 
     Raises:
-        ExportError: C does not know what the scene has, or its contacts; or the scene has no equilibrium.
+        ExportError: C does not support parts of the scene or its contacts; or the scene has no equilibrium.
     """
     check_contact(model.scene, {})
     columns = row_results(model.scene, estimate_errors=estimate_errors, stability=stability)
@@ -50,7 +50,7 @@ def contact_row_library(
 
 
 def _rows_source(chosen: Chosen, names: Names, columns: tuple[str, ...]) -> str:
-    """The function for rows."""
+    """Write the source of the function for rows."""
     rods = [rod.name for rod in chosen.scene.rods]
     obstacles = [obstacle.name for obstacle in chosen.scene.obstacles]
     touching = list(pairs(chosen.scene))

@@ -69,7 +69,7 @@ VERBATIM = (
     "contact_settle.c",
     "contact.c",
 )
-"""Files of the folder ``c`` that the library's own source includes, as they are."""
+"""Files of the folder ``c`` that the library's own source includes unchanged."""
 
 TEMPLATES = ("contact.h.in", "contact_library.c.in", "contact_config.h.in", "contact_demo.c.in")
 """Templates of header, source, configuration and demo."""
@@ -81,19 +81,19 @@ STABILITY_FILES = ("contact_stability.c", SECOND_VARIATION)
 """Further files of a library that judges stability."""
 
 MOST_TRIES = 24
-"""Most arrangements that are solved for one change of the inputs."""
+"""Most arrangements that the solver tries for one change of the inputs."""
 
 TRIES_EACH = 3
-"""Times that each arrangement may be tried where there are few, from other places."""
+"""Most tries of each arrangement, from different places, if there are few arrangements."""
 
 CANDIDATES = 24
-"""Most contacts that wait to be tried."""
+"""Most sets of contacts that wait to be tried."""
 
 TRACK_ITERATIONS, TRACK_PARTS = 60, 20
-"""Budget of a turn of a control loop where the caller names none."""
+"""Default budget of a turn of a control loop."""
 
 LONGEST_WAY = 0.1
-"""Farthest that a section may move in one part of the way of the inputs, relative to the length of its rod."""
+"""Largest displacement of a section in one part of the path of the inputs, over the length of its rod."""
 
 
 def contact_files(
@@ -106,16 +106,16 @@ def contact_files(
     derivatives: bool = False,
     batches: bool = False,
 ) -> dict[str, str]:
-    """Text of every file of a folder by name; the manifest, which lists these files, is last.
+    """Write the text of every file of a folder, by name; the manifest, which lists these files, is last.
 
     Args:
         model: the exported model.
-        chosen: its arrangements of contacts.
-        names: what things are called.
-        error_estimate: error of the tip pose at the scene's inputs relative to the length.
-        verified: over which ranges the discretisation keeps the tolerance; None where that is not known.
-        derivatives: whether the equations of each arrangement are written once more with derivatives, for CasADi.
-        batches: whether it has a function for many load cases.
+        chosen: arrangements of contacts of the library.
+        names: names of the library and its parts.
+        error_estimate: error of the tip pose at the scene's inputs, over the length.
+        verified: ranges over which the discretisation keeps the tolerance; None if unknown.
+        derivatives: whether the equations of each arrangement are also written with derivatives, for CasADi.
+        batches: whether the folder has a function for many load cases.
     """
     kernels = distance_kernels(chosen, names.kernel("distance"))
     for number, own in enumerate(chosen.equations):
@@ -207,7 +207,7 @@ def _words(chosen: Chosen, names: Names, tables: Tables, generated: dict[str, st
 
 
 def _batch_words(model: Model, names: Names) -> dict[str, Any]:
-    """Words of the function for many load cases, whose solutions are states."""
+    """Words for the function of many load cases, whose solutions are states."""
     given = "inputs + (size_t)i * INPUTS"
     if model.parameters.size:
         given = "inputs + (size_t)i * OWN_INPUTS, parameters + (size_t)i * PARAMETERS"
@@ -275,7 +275,7 @@ def _number_macros(names: Names, tables: Tables) -> str:
 
 
 def _manifest(model: Model, chosen: Chosen, names: Names) -> dict[str, Any]:
-    """The contents of the library, as data."""
+    """Describe the contents of the library, as data."""
     free = build(chosen.scene, chosen.equations[0].grids.discretisation(chosen.scene))
     arrangements = []
     for own in chosen.equations:

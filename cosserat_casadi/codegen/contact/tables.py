@@ -30,12 +30,12 @@ POLYNOMIALS = {"legendre": chebyshev.legendre_polynomials, "chebyshev": chebyshe
 
 @dataclass(frozen=True)
 class _Level:
-    """The arrangements on some modes.
+    """The arrangements at one level of modes.
 
     Attributes:
-        prefix: beginning of the names of their tables.
-        equations: of each arrangement.
-        words: the kernels of each.
+        prefix: prefix of the names of their tables.
+        equations: equations of each arrangement.
+        words: kernels of each arrangement.
     """
 
     prefix: str
@@ -49,7 +49,7 @@ class Tables:
 
     Attributes:
         chosen: the arrangements.
-        name: what symbols begin with.
+        name: prefix of symbols.
     """
 
     chosen: Chosen
@@ -67,18 +67,18 @@ class Tables:
 
     @property
     def owners(self) -> list[str]:
-        """Names of the owners of contacts: the rods, then all bodies where any body may touch."""
+        """Names of the owners of contacts: the rods, then all bodies if any body may touch."""
         bodies = [body.name for body in self.chosen.scene.bodies]
         return [*self.rods, *(bodies if touches_bodies(self.chosen.scene) else [])]
 
     @property
     def pairs(self) -> list[tuple[str, ObstacleRecord]]:
-        """Each owner of contacts with each obstacle that it must not enter."""
+        """Pairs of an owner of contacts and an obstacle that it must not enter."""
         scene = self.chosen.scene
         return [*pairs(scene), *((body.name, obstacle) for body, obstacle in body_pairs(scene))]
 
     def sizes(self, equations: ContactEquations) -> tuple[int, int, int]:
-        """Numbers of unknowns, of forces and of places of an arrangement."""
+        """Count the unknowns, the forces and the places of an arrangement."""
         nominal = equations.nominal
         return nominal.model.size, len(nominal.force_units), len(equations.state.places)
 
@@ -89,7 +89,7 @@ class Tables:
 
     @property
     def _all(self) -> list[ContactEquations]:
-        """The arrangements, then those on richer modes."""
+        """The arrangements, followed by the arrangements on richer modes."""
         return [*self.chosen.equations, *self.chosen.richer]
 
     @property
@@ -107,7 +107,7 @@ class Tables:
         return max(counts) + len(self.owners) - len(self.rods)
 
     def text(self) -> str:
-        """All tables of the library's contacts, as C."""
+        """Write all tables of the library's contacts in C."""
         parts = [
             *(self._modes(level) for level in self._levels),
             self._rod_table(),
@@ -124,14 +124,14 @@ class Tables:
 
     @property
     def _levels(self) -> list[_Level]:
-        """The modes of answers, and the richer ones of estimates where errors are estimated."""
+        """The level of modes of answers, and the richer level if errors are estimated."""
         levels = [_Level("", self.chosen.equations, words_of(self.chosen))]
         if self.chosen.richer:
             levels.append(_Level("RICHER_", self.chosen.richer, RICHER_WORDS))
         return levels
 
     def _modes(self, level: _Level) -> str:
-        """Modes and nodes of all rods."""
+        """Write the tables of modes and nodes of all rods."""
         lines = []
         entries = []
         for number, name in enumerate(self.rods):
@@ -208,7 +208,7 @@ class Tables:
         return float(variations(self.chosen.equations[0].nominal.model).units.max())
 
     def roots(self, equations: ContactEquations) -> FloatArray:
-        """Root of the energy unit of each unknown over the largest; zero of multipliers and tensions."""
+        """Square root of the energy unit of each unknown, over the largest one; zero for multipliers and tensions."""
         allowed = variations(equations.nominal.model)
         roots = np.zeros(equations.nominal.model.size)
         roots[allowed.free] = np.sqrt(allowed.units / self._largest_unit)
@@ -278,7 +278,7 @@ class Tables:
         return "\n".join(lines)
 
     def _places_of_ends(self, equations: ContactEquations, rod: str) -> list[int]:
-        """Number of the place that each end of an element of a rod is; −1 where it stays."""
+        """Index of the place at each end of an element of a rod; −1 for a fixed end."""
         places: dict[float, int] = {}
         number = 0
         for touch in equations.state.touches:
@@ -310,7 +310,7 @@ class Tables:
         return entries
 
     def _arrangement_table(self) -> str:
-        """The arrangements, then those on richer modes in the same order."""
+        """Write the table of arrangements, followed by those on richer modes in equal order."""
         entries = [self._entry(level, number) for level in self._levels for number in range(len(level.equations))]
         return "\n" + record_table("arrangement", "ARRANGEMENT", "", entries)
 
@@ -350,7 +350,7 @@ class Tables:
 
 
 def described(equations: ContactEquations) -> str:
-    """Who touches what in an arrangement, in words."""
+    """Say in words who touches what in an arrangement."""
     words = []
     for touch in equations.state.touches:
         where = "at its tip" if touch.reaches_tip else "at a point"

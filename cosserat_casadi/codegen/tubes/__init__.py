@@ -1,1 +1,1 @@
-"""Concentric tubes in C: their equations with derivatives, their sources, and back in Python."""
+"""Concentric tubes in C: their equations with derivatives, their sources, and loading into Python."""

@@ -1,4 +1,4 @@
-"""An exported folder of concentric tubes, compiled: the solver in C, from Python."""
+"""A compiled exported folder of concentric tubes: the solver in C, called from Python."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ class TubeOptions(ctypes.Structure):
 class CompiledTubes(Compiled):
     """An exported folder of concentric tubes: the functions of every folder, poses of all tips, and turns.
 
-    Unknown is by how much the tip of each tube is turned against its drive, rad; under loads also the quaternion of the
-    frame at the tip of the robot less 1 0 0 0. Tubes are solved from straight ones unless there is a start.
+    Unknowns are the rotation of the tip of each tube relative to its drive, rad, and under loads the quaternion of the
+    frame at the tip of the robot less 1 0 0 0. The solver starts from straight tubes unless there is a start.
     """
 
     info_type: ClassVar[type[TubeInfo]] = TubeInfo
@@ -46,7 +46,7 @@ class CompiledTubes(Compiled):
     def poses(
         self, inputs: ArgumentValues, x: npt.ArrayLike, *, parameters: ArgumentValues = None
     ) -> dict[str, FloatArray]:
-        """Position and quaternion of the tip of each tube, shape (7,)."""
+        """Return position and quaternion of the tip of each tube, shape (7,)."""
         poses = np.zeros((len(self.tubes), POSE_SIZE))
         given = self._given(inputs, parameters)
         self._function("poses")(pointer(vector(x, self.size, "x")), *given, pointer(poses), self._workspace())
@@ -62,15 +62,15 @@ class CompiledTubes(Compiled):
         max_iterations: int | None = None,
         max_continuation_steps: int | None = None,
     ) -> CompiledTurn:
-        """One turn of a control loop: the solution and its derivatives, in bounded work.
+        """Compute one turn of a control loop: the solution and its derivatives, in bounded work.
 
         Args:
-            inputs: of the turn.
+            inputs: inputs of the turn.
             start: the solution of the turn before.
-            parameters: of the turn; the scene's own by default.
+            parameters: parameters of the turn; by default those of the scene.
             derivatives: whether derivatives of the tips are wanted.
-            max_iterations: most Newton steps; by default what the header says.
-            max_continuation_steps: most points between the last inputs and these; by default what the header says.
+            max_iterations: most Newton steps; by default as in the header.
+            max_continuation_steps: most points between the last inputs and these; by default as in the header.
 
         Raises:
             ValueError: one budget is given without the other.

@@ -1,9 +1,9 @@
 """A folder of C sources of concentric tubes: header, kernels, solver, build file, README, manifest.
 
-Its kernels are the equations of concentric tubes as functions for C. Unknown is the twist y: by how much the tip of
-each tube is turned against its drive, and under loads by how much the quaternion of the frame at the tip of the robot
-differs from one. All zero are straight tubes, and a turn of all drives together changes no twist. On the way from
-straight tubes, t from 0 to 1, the tubes are bent first, and loaded then.
+Its kernels are the equations of concentric tubes as functions for C. The unknown is the twist y: the rotation of the
+tip of each tube relative to its drive, and under loads the difference of the quaternion of the frame at the tip of the
+robot from one. For straight tubes y = 0, and a rotation of all drives together does not change y. On the path from
+straight tubes, t from 0 to 1, the tubes are bent first, and then loaded.
 """
 
 from __future__ import annotations
@@ -53,39 +53,39 @@ from cosserat_casadi.tubes.robot import Robot
 from cosserat_casadi.tubes.tube_functions import RESOLVED, TubeFunctions
 
 NEAR = 0.3
-"""Twist, rad, by which a turn may change the tubes at once; farther on the way is followed."""
+"""Largest change of the twist, rad, in one go within a turn; a longer path is followed in steps."""
 
 LIMITS = replace(ContinuationSettings(), longest=0.5)
-"""Limits of a way: in no step do the tubes twist by much more than that, rad, so that it leads past no snap."""
+"""Limits of a path: no step changes the twist by much more than ``longest``, rad, so that no snap is skipped."""
 
 OWN = ("tubes_error.c", "tubes_turn.c")
-"""Files of the folder ``c`` for tubes alone."""
+"""Files of the folder ``c`` that only tubes need."""
 
 OTHERS = ("solver_recover.c",)
-"""Files of the solver that tubes do without."""
+"""Files of the solver that tubes do not need."""
 
 RANGES = (
     "a translation from zero to the length of its tube, and by the bounds and ranges of\n"
     "   the scene. The solver refuses a translation beyond its tube, and inputs at which no tube\n"
     "   stands out of the plate, each of which is in its range; at bounds and ranges it does not look."
 )
-"""Which ranges inputs have, and what the solver does beyond them, for the header."""
+"""Sentence on the ranges of inputs, and on the solver beyond them, for the header."""
 
 ONE_SIDED = " Where two tubes end at one\n   place, or a curved part begins in the plate, they are those of one side."
-"""Which derivatives a library has where there is none to both sides."""
+"""Sentence on one-sided derivatives, for the header."""
 
 VERBATIM = (*(file for file in SHARED if file not in OTHERS), "linear_dense.c", *OWN)
-"""Files of the folder ``c`` that the library's own source includes, as they are."""
+"""Files of the folder ``c`` that the library's own source includes unchanged."""
 
 
 def check_tubes(asked: Mapping[str, bool]) -> None:
-    """Refuse what C does not have of concentric tubes.
+    """Refuse options that C does not support for concentric tubes.
 
     Args:
-        asked: whether what an option stands for is asked for, by the option; batches are not refused.
+        asked: whether each option is requested, by option; batches are not refused.
 
     Raises:
-        ExportError: with every option.
+        ExportError: options are refused; the error lists all of them.
     """
     problem = "is for rods, and the scene has concentric tubes"
     lost = [option for option, wanted in asked.items() if wanted and option != "--batches"]
@@ -95,16 +95,16 @@ def check_tubes(asked: Mapping[str, bool]) -> None:
 def tube_files(
     model: TubeFunctions, name: str, error_estimate: float | None, *, batches: bool = False
 ) -> dict[str, str]:
-    """Text of every file of a folder by name; the manifest, which lists these files, is last.
+    """Write the text of every file of a folder, by name; the manifest, which lists these files, is last.
 
     Args:
         model: the robot with its steps.
-        name: the library.
-        error_estimate: of the tips at the scene's own inputs, for manifest and README; None where it is not known.
-        batches: whether its function for many load cases was asked for.
+        name: name of the library.
+        error_estimate: error of the tips at the scene's inputs, for manifest and README; None if unknown.
+        batches: whether the function for many load cases was requested.
 
     Raises:
-        ExportError: the name is none for a library, or two inputs would have one name in C.
+        ExportError: the name is not valid for a library, or two inputs would have one name in C.
     """
     names = scene_names(name, model.scene)
     kernels = TubeKernels(model, f"{name}_k").all()
@@ -187,7 +187,7 @@ def _number_macros(names: Names, robot: Robot) -> str:
 
 
 def _manifest(model: TubeFunctions, names: Names, error_estimate: float | None) -> dict[str, Any]:
-    """The contents of the folder, as data."""
+    """Describe the contents of the folder, as data."""
     robot = model.robot
     unknowns = [{"rod": tube, "first": index, "count": 1} for index, tube in enumerate(robot.names)]
     if model.size > robot.size:
@@ -209,14 +209,14 @@ class TubeKernels:
 
     Attributes:
         model: the robot, with an even number of steps.
-        name: what their names begin with.
+        name: prefix of their names.
     """
 
     model: TubeFunctions
     name: str
 
     def all(self) -> list[ca.Function]:
-        """Residual, Jacobian, rate, what half of the steps give, poses and sensitivity, with dense results."""
+        """All kernels: residual, Jacobian, rate, change by half of the steps, poses, sensitivity; results are dense."""
         x, *given = self._of_model.values()
         load_factor = self._load_factor
         on_path = self._on_path
@@ -244,7 +244,7 @@ class TubeKernels:
 
     @cached_property
     def _symbols(self) -> dict[str, ca.MX]:
-        """Twist, inputs, and parameters where the scene names some."""
+        """Symbols of twist and inputs, and of parameters if the scene names some."""
         symbols = {"y": ca.MX.sym("y", self.model.size), "inputs": ca.MX.sym("inputs", self.model.inputs.size)}
         if self.model.parameters.size:
             symbols[PARAMETERS] = self.model.parameters.symbol
@@ -252,7 +252,7 @@ class TubeKernels:
 
     @cached_property
     def _load_factor(self) -> ca.MX:
-        """Place t on the way from straight tubes."""
+        """Symbol of the place t on the path from straight tubes."""
         return ca.MX.sym("load_factor")
 
     @cached_property
@@ -276,9 +276,9 @@ class TubeKernels:
         return [ca.vertcat(drives, of_loads * loads), *p, ca.fmin(2 * t, 1)]
 
     def _halved_change(self, step: ca.MX) -> Matrix:
-        """Distance of the tips with half of the steps, a step of the unknowns away, as :func:`tip_error` has it.
+        """Distance of the tips with half of the steps, after a step of the unknowns, as in :func:`tip_error`.
 
-        The largest of all tubes: distances over the length that stands out, and angles.
+        It is the largest of all tubes: of distances over the protruding length, and of angles.
         """
         x, *given = self._of_model.values()
         positions, quaternions = self.model.tips(x, *given)
@@ -294,9 +294,9 @@ class TubeKernels:
         return largest
 
     def _sensitivity(self) -> list[Matrix]:
-        """Derivatives of the residual with y and with the inputs, and of the poses, 7 n rows, with both.
+        """Derivatives of the residual by y and by the inputs, and of the poses, 7 n rows, by both.
 
-        Derivatives with the parameters follow the derivatives with the inputs.
+        Derivatives by the parameters follow those by the inputs.
         """
         at = list(self._of_model.values())
         jacobian, by_inputs, _, poses_by_x, poses_by_inputs, *by_parameters = self.model.sensitivity(*at)
@@ -312,12 +312,12 @@ class TubeKernels:
     def _function(
         self, word: str, results: Sequence[Matrix], further: Mapping[str, ca.MX] | None = None
     ) -> ca.Function:
-        """A kernel; parameters stand behind the inputs in one argument."""
+        """Make a kernel, with parameters appended to the inputs in one argument."""
         written = with_parameters_behind_inputs(self._written(word, results, further))
         return with_dense_results(written, f"{self.name}_{word}")
 
     def _written(self, word: str, results: Sequence[Matrix], further: Mapping[str, ca.MX] | None = None) -> ca.Function:
-        """A function of the twist, of the inputs and the parameters, and of further arguments."""
+        """Make a function of the twist, the inputs and the parameters, and of further arguments."""
         arguments = {**self._symbols, **(further or {})}
         names = [f"{word}_{number}" for number in range(len(results))]
         return ca.Function("of_y", list(arguments.values()), list(results), list(arguments), names)
