@@ -227,7 +227,7 @@ def closer_sections(
 
 
 def _parts_of_elements(rod: DiscreteRod, sections: int) -> SummedSections:
-    """At least this number of sections in each element, at Gauss points of equal parts."""
+    """Summed sections at Gauss points of equal parts of each element, no fewer than a number for each."""
     count = POINTS_A_PART * ceil(sections / POINTS_A_PART)
     return SummedSections(rod, (count,) * rod.grid.elements, POINTS_A_PART)
 

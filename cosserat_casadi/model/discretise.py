@@ -32,8 +32,7 @@ ADDED_NODES = 4
 """Intervals that are added to every element at least."""
 
 NODES_ABOVE_MODES = 3
-"""Intervals beyond the modes of a strain with which the balance of these modes is exact enough for an error
-estimate."""
+"""Intervals beyond the modes of a strain with which an error estimate by these modes is exact enough."""
 
 NODES_ABOVE_MODES_IN_CONTACT = 8
 """Intervals beyond the modes of a strain where obstacles press on a few nodes: so short a push needs more of them."""

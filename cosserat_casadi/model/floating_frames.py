@@ -120,8 +120,7 @@ class _Seat(NamedTuple):
     """A joint of a body with a pose yet to be determined.
 
     Attributes:
-        section: world pose of the section, or of the place in another body or the world, to which the joint holds the
-            body.
+        section: world pose of the section, or the place in another body or the world, that holds the body.
         place: pose of the joint in the body.
         held: directions that it holds; the axes of section and place agree in a closed joint.
     """
@@ -340,8 +339,7 @@ class UnloadedScene:
     def _placing_joints(self, body: str) -> list[scenes.Joint]:
         """Joints that determine the unloaded pose of a body.
 
-        These are joints at sections of rods that do not start on bodies, in the world, and at bodies that are placed
-        before it.
+        These are joints at rods that do not start on bodies, in the world, and at bodies that are placed before it.
         """
         rank = self._ranks.get(body, len(self._ranks))
         placing = []

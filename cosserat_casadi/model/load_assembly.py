@@ -103,8 +103,7 @@ class RodLoads:
         motion = None if member.seen_from(load) is not None or kernel.moving is None else self.motion
         if not kernel.pose_free or motion is not None:
             return [self._pose_wrench(kernel, site, motion)]
-        # A load that does not depend on the pose is constant coefficients times profiles: it takes no kernel for each
-        # node.
+        # A load that does not depend on poses is constant coefficients times profiles: no kernel for each node.
         given_force, given_moment = kernel.coefficients(values)
         force = self.base.in_base_axes(given_force, follower=kernel.follower)
         moment = self.base.in_base_axes(given_moment, follower=kernel.follower)

@@ -151,8 +151,7 @@ class ModelFunctions:
     def resolution_index(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ resolution index: above 1 the nodes are too few to resolve the rod, whatever its residual.
 
-        It is at least the depth of rods in smooth obstacles, over the width, so that it is above 1 for rods that lie
-        too deep.
+        It is at least the depth of rods in smooth obstacles over the width, and so above 1 for rods that lie too deep.
         """
         return [resolution_index(written)]
 
@@ -299,10 +298,9 @@ class ModelFunctions:
     def shape(self, written: Expressions) -> list[Matrix]:
         """(x, inputs, X) ↦ (position, quaternion) at any X in [0, 1], world frame, by interpolation.
 
-        The interpolant is the polynomial through the nodes of each element as a Chebyshev series, which has no
-        singularity at a node and exact derivatives with respect to X too. X is one number; position is 3×1 and the
-        quaternion w, x, y, z 4×1. For k abscissae, ``shape[rod].map(k)`` with x and inputs repeated, or
-        ``Solution.pose``.
+        The polynomial through the nodes of each element is a Chebyshev series: no singularity at a node, and exact
+        derivatives by X too. X is one number; position is 3×1 and the quaternion w, x, y, z 4×1. For k abscissae,
+        ``shape[rod].map(k)`` with x and inputs repeated, or ``Solution.pose``.
         """
         rod_shape = written.system.rods[written.owner].shape
         weights = interpolation_weights(written.discrete, written.owner, written["X"])

@@ -88,7 +88,7 @@ def refuse_held_by_contact(scene: scenes.Scene) -> None:
 
 
 def held_by_contact(scene: scenes.Scene) -> Iterator[Problem]:
-    """Free rods with exact contact of their own or of their bodies."""
+    """Free rods that touch obstacles by exact contact, or whose bodies do."""
     # Contact has no friction: along an obstacle such a rod would be in equilibrium nowhere, or anywhere.
     remedy = "give its base a place; or let it move: simulate the scene"
     for obstacle in scene.obstacles:

@@ -38,8 +38,8 @@ def _sum(of_rods: list[Count]) -> Count:
 def prices_of_effects(scene: scenes.Scene, progress: StageProgress | None = None) -> dict[str, Count]:
     """Operations that each load, actuator, obstacle with a width and contact of rods adds to the residual, by name.
 
-    The price is the cost of the residual with the effect less the cost without it. For contact the latter also lacks
-    the elements that contact asks for, and all pairs of sections count, as if they were near.
+    The price is the cost of the residual with the effect less the cost without it. Without contact the elements that it
+    asks for are missing too. All pairs of sections count, as if they were near.
 
     Args:
         scene: the scene with all effects.

@@ -256,8 +256,7 @@ class PairTerms:
         way, push, pressing = ca.vertsplit(self.section_pairs.way[:, :count], [0, 3, 6, 7])
         pressed = self.history.is_known * (pressing > 0.0)
         way = way * ca.repmat(pressed / ca.if_else(pressing > 0.0, pressing, 1.0), 3, 1)
-        # The drag is projected on the mean surface of all pairs: projected on each pair's it would fade, point after
-        # point.
+        # The mean surface of all pairs takes the projection: projected on each pair's surface the drag would fade.
         square = ca.sum1(push**2)
         drag = way - push * ca.repmat(ca.sum1(push * way) / ca.if_else(square > 0.0, square, 1.0), 3, 1)
         share = ca.sqrt(ca.sum1(drag**2)) / self.pair.slip_way

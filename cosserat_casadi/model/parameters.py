@@ -1,9 +1,8 @@
 """Parameters of a model: numbers of the scene that are arguments of its functions, as records.
 
 A model with parameters is written in a scene whose numbers are expressions: where the scene names a number, its record
-holds an entry of the symbol p. Code that computes with the numbers of a scene therefore does not know of parameters.
-Scales of the equations, such as EI/ℓ, follow from the scene's own numbers, so that unknowns have the same units for
-every p.
+holds an entry of the symbol p. Code that computes with these numbers does not know of parameters. Scales of the
+equations, such as EI/ℓ, follow from the scene's own numbers: unknowns have the same units for every p.
 """
 
 from __future__ import annotations
