@@ -1,6 +1,6 @@
-"""Scenes with obstacles to their tolerance: poses, forces of contact and where it begins and ends.
+"""Scenes in exact contact to their tolerance: poses, forces of contact and places of contact.
 
-The contacts are found on one level of modes and solved again on finer ones, until two levels differ by less than the
+The contacts are found on one level of modes and solved again on finer levels, until two levels differ by less than the
 tolerance. The coarser of the two is the solution, and their distance its estimate.
 """
 
@@ -25,13 +25,13 @@ from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise, nodes_fo
 from cosserat_casadi.numerics.progress import Progress, Report
 
 LEVELS = (5, 7, 9, 11, 13, 16, 20, 24, 28)
-"""Modes per strain and element that are tried."""
+"""Tried modes per strain and element."""
 
 FINER_MODES = 3
 """Modes that are added to the user's to estimate their error."""
 
 MOST_FAILURES = 1
-"""Levels without an equilibrium after which the next one ends the search: the cushions are the same on all."""
+"""Number of levels without an equilibrium that end the search: the cushions are equal on all levels."""
 
 
 def solve_contact_scene(
@@ -44,11 +44,11 @@ def solve_contact_scene(
     """Equilibrium of a scene with obstacles to its tolerance, or on the modes and nodes that it fixes.
 
     Args:
-        scene: without parameters.
+        scene: a scene without parameters.
         values: inputs by name.
-        transport: rotation integrator where the scene names none.
-        progress: told the share of the load path that is done.
-        report: told the discretisation being solved.
+        transport: rotation integrator for a scene that names none.
+        progress: receives the share of the load path that is done.
+        report: receives the discretisation that is solved.
     """
     tolerance = scene.accuracy.tolerance
     coarse: Solution | None = None
@@ -59,7 +59,7 @@ def solve_contact_scene(
         if report is not None:
             report(f"{modes} modes")
         start = coarse if coarse is not None and coarse.converged else None
-        # Modes that a scene fixes are all that there are.
+        # Fixed modes are the only level.
         unmet = 0.0 if scene.accuracy.fixed else _unmet(start)
         fine = solve_contact(scene, Grids(chosen), values, start=start, progress=progress, unmet_before=unmet)
         failures += not fine.converged
@@ -77,7 +77,7 @@ def solve_contact_scene(
             if scene.accuracy.fixed or judged.error_estimate <= tolerance:
                 return replace(judged, iterations=fine.iterations)
             if stays_unmet(equilibrium_in(fine), unmet, tolerance):
-                # Other contacts should be there, and none were found.
+                # Other contacts would have to hold, but none were found.
                 why = why_unsettled(scene, [state_in(fine.model.scene)])
                 unresolved = judged.unresolved()
                 return replace(unresolved, iterations=fine.iterations, message=unresolved.message + why)
@@ -91,12 +91,12 @@ def solve_contact_scene(
 
 
 def _unmet(solution: Solution | None) -> float:
-    """Error that the contacts of an equilibrium leave, as its ``unmet`` has it; infinite without an equilibrium."""
+    """Error of the contacts of an equilibrium, its ``unmet``; infinite without an equilibrium."""
     return inf if solution is None else equilibrium_in(solution).unmet()
 
 
 def _levels(scene: scenes.Scene) -> list[tuple[int | tuple[int, ...], int]]:
-    """Modes, and the least intervals, to solve one after the other."""
+    """Modes and least intervals of the levels, in their order."""
     accuracy = scene.accuracy
     if not accuracy.fixed:
         return [(modes, nodes_for(modes)) for modes in LEVELS]
