@@ -68,11 +68,11 @@ class AffineLaw:
 
     Attributes:
         constant: constant term.
-        of_intervals: of the intervals, by method.
-        in_columns: of the intervals in each group of columns.
-        turns: of products with the matrix of turns in each group of columns.
-        integrals: of products with the matrix of integration in each group of columns.
-        entries: of the entries of the Jacobian.
+        of_intervals: factor of the intervals, by method.
+        in_columns: factor of the intervals in each group of columns.
+        turns: factor of products with the matrix of turns in each group of columns.
+        integrals: factor of products with the matrix of integration in each group of columns.
+        entries: factor of the entries of the Jacobian.
     """
 
     constant: float
