@@ -203,7 +203,7 @@ class Arrangement:
         return float(model.resolution_index(x, inputs, *places))
 
     def parts(self, z: FloatArray) -> Iterator[tuple[Touch, FloatArray, FloatArray]]:
-        """Each contact where it is, the forces at its ends and the coefficients of that along it, without unit."""
+        """Each contact at its place, with dimensionless forces at sections and coefficients of the force along it."""
         _, forces, _ = self.equations.parts(z)
         modes = self.equations.nominal.modes
         return self.state(z).with_forces(forces, modes)
