@@ -16,7 +16,7 @@ class Problem:
     Attributes:
         where: path of the offending key, such as ``rods[0].section.radius``.
         problem: the fault in words, with the offending value.
-        remedy: what to do about it; empty when the problem says it already.
+        remedy: advice; empty if the problem implies it.
     """
 
     where: str
@@ -29,7 +29,7 @@ class Problem:
 
 
 ARGUMENTS = ("SCENE", "NAME", "PAGE")
-"""Arguments of commands, as ``--help`` and problems with them name them."""
+"""Names of the arguments of commands in ``--help`` and in problems."""
 
 
 class CosseratError(Exception):
@@ -42,13 +42,13 @@ class CosseratError(Exception):
     page = "command-line"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """How pickle and copy make the error anew, such as on its way from another process."""
-        # Python would call the class with ``args``, which holds the sentence and not what the sentence is made of.
+        """Pickle and copy rebuild the error, for example on its way from another process."""
+        # Python would call the class with ``args``, which holds the sentence and not its parts.
         return _with_sentence, (type(self), *self.args), self.__dict__
 
 
 def _with_sentence(error_class: type[CosseratError], *sentence: str) -> CosseratError:
-    """An error that says this sentence; its attributes follow."""
+    """An error with this sentence, before its attributes are set."""
     error = error_class.__new__(error_class)
     error.args = sentence
     return error
@@ -71,7 +71,7 @@ class SceneError(CosseratError):
 
     def __init__(self, *problems: Problem) -> None:
         self.problems = problems
-        # What is wrong with an option or an argument is no matter of the scene.
+        # A fault of an option or an argument does not concern the scene.
         if not all(problem.where.startswith("--") or problem.where in ARGUMENTS for problem in problems):
             self.page = "scene"
         super().__init__("\n".join(str(problem) for problem in problems))
@@ -84,7 +84,7 @@ class SolveError(CosseratError):
 
 
 class ExportError(CosseratError):
-    """A model cannot be exported as asked, or an exported folder cannot be used.
+    """A model cannot be exported with these options, or an exported folder cannot be used.
 
     Attributes:
         problems: every fault found.
@@ -99,7 +99,7 @@ class ExportError(CosseratError):
 
 @contextmanager
 def collect_problems(problems: list[Problem]) -> Iterator[None]:
-    """Keep the problems of a refusal, and let the checks go on: a user sees every fault of a command line at once."""
+    """Collect the problems of a refusal and let the checks continue, so that a user sees every fault at once."""
     try:
         yield
     except (SceneError, ExportError) as error:
@@ -107,7 +107,7 @@ def collect_problems(problems: list[Problem]) -> Iterator[None]:
 
 
 def refuse(problems: Iterable[Problem], kind: type[SceneError | ExportError] = SceneError) -> None:
-    """Raise an error with all problems, where there are some."""
+    """Raise an error with all problems, if there are any."""
     found = tuple(problems)
     if found:
         raise kind(*found)

@@ -1,4 +1,4 @@
-"""Writing files whole or not at all; a hash of the sources of the package as they lie on the disk."""
+"""Atomic writing of files; a hash of the sources of the package on the disk."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from typing import IO
 from cosserat_casadi.errors import Problem, SceneError, WriteError
 
 BLOCK = 1 << 20
-"""Bytes that are copied at a time."""
+"""Number of bytes that are copied at a time."""
 
 MESHES = (".glb", ".usda")
 """Suffixes of files of meshes, which need no matplotlib."""
@@ -25,16 +25,16 @@ MESHES = (".glb", ".usda")
 def check_writable(path: Path, option: str, *, folder: bool = False) -> None:
     """Refuse a path that cannot become a file, before any work is done for it.
 
-    Links are followed; a device or a pipe that is there needs no folder that takes files.
+    Links are followed; an existing device or pipe does not need a writable folder.
 
     Args:
-        path: of the file.
-        option: what asks for it.
-        folder: whether the path is to become a folder of files instead.
+        path: path of the file.
+        option: option of the file, for messages.
+        folder: whether the path should become a folder instead.
 
     Raises:
-        SceneError: a folder lies where a file is wanted; the path is a device or a pipe that takes nothing, or its
-            folder does not exist or cannot be written to, or the path is a link that leads to itself.
+        SceneError: the path is an existing folder, a device or a pipe that cannot be written, or a link to itself; or
+            its folder does not exist or cannot be written to.
     """
     if path.is_dir() and not folder:
         raise SceneError(Problem(option, f"{path} is a folder", "name a file in it"))
@@ -58,16 +58,16 @@ def is_special(path: Path) -> bool:
 
 
 def are_one_file(first: Path, second: Path) -> bool:
-    """Whether two paths lead to one regular file, there or still to be written; into a device many may write."""
+    """Whether two paths lead to one regular file, existing or not; several may write to one device."""
     if first.exists() and second.exists():
         return first.is_file() and first.samefile(second)
     return os.path.realpath(first) == os.path.realpath(second)
 
 
 def write_atomically(path: Path, content: bytes) -> None:
-    """Write a file under a temporary name beside its place, then move it there: it is never half there.
+    """Write a file atomically: under a temporary name beside its path, then move it there.
 
-    Into a device or a pipe, which must not be replaced by a file, the content is written once it is whole.
+    A device or a pipe is not replaced by a file: the complete content is written into it.
 
     Raises:
         WriteError: the disk is full, or the folder cannot be written to.
@@ -78,9 +78,9 @@ def write_atomically(path: Path, content: bytes) -> None:
 
 @contextmanager
 def atomic_file(path: Path) -> Iterator[Path]:
-    """A temporary file, to be filled; it goes to a path at the end, or is removed where that fails.
+    """A temporary file to fill; at the end it is moved to a path, or removed after a failure.
 
-    Where the path is a link, the file goes to where the link leads. Into a device or a pipe its content is written.
+    If the path is a link the file goes to the target of the link. The content is written into a device or a pipe.
 
     Raises:
         WriteError: the disk is full, or the folder cannot be written to.
@@ -107,12 +107,12 @@ def atomic_file(path: Path) -> Iterator[Path]:
 
 @contextmanager
 def atomic_folder(path: Path) -> Iterator[Path]:
-    """A temporary folder, to be filled; it goes to a path at the end, or is removed where that fails.
+    """A temporary folder to fill; at the end it is moved to a path, or removed after a failure.
 
-    Where the path is a link, the folder goes to where the link leads.
+    If the path is a link the folder goes to the target of the link.
 
     Raises:
-        WriteError: the disk is full, the parent folder cannot be written to, or something lies at the path.
+        WriteError: the disk is full, the parent folder cannot be written to, or the path exists.
     """
     with write_errors(path):
         target = _target(path)
@@ -127,7 +127,7 @@ def atomic_folder(path: Path) -> Iterator[Path]:
 
 
 def _target(path: Path) -> Path:
-    """Where a path leads to: itself, unless it is a link."""
+    """Target of a path: itself, unless it is a link."""
     if path.is_symlink():
         return Path(os.path.realpath(path))
     return path
@@ -141,7 +141,7 @@ def _pour(source: Path, special: Path) -> None:
 
 
 def write_whole(stream: IO[bytes], content: bytes) -> None:
-    """Write all of a content: an unbuffered stream may take a part of it, and tells the next time why.
+    """Write a content completely: an unbuffered stream may take only a part, and reports the cause at the next call.
 
     Raises:
         OSError: the disk is full.
@@ -154,10 +154,10 @@ def write_whole(stream: IO[bytes], content: bytes) -> None:
 
 @contextmanager
 def write_errors(path: Path) -> Iterator[None]:
-    """Say of a failure inside which file could not be written: the system does not.
+    """Convert a failure inside to an error that names the file, which the system's error does not.
 
     Raises:
-        WriteError: in place of the system's own error.
+        WriteError: the system reports an error, which this one replaces.
     """
     try:
         yield
@@ -168,7 +168,7 @@ def write_errors(path: Path) -> Iterator[None]:
 
 
 ENDINGS = {".py", ".in", ".c", ".h", ".toml", ".json"}
-"""Ends of the names of the files that decide on the results of the package."""
+"""Suffixes of the files that decide on the results of the package."""
 
 
 def sources_hash(folder: Path | None = None) -> str | None:
@@ -178,18 +178,18 @@ def sources_hash(folder: Path | None = None) -> str | None:
         folder: folder with the sources; by default the package's.
 
     Returns:
-        the hash; None where a file has changed since the package was imported, or where there are no files.
+        the hash; None if a file has changed since the package was imported, or there are no files.
     """
     root = os.fspath(folder or Path(__file__).parent)
-    # The package's own module stands above all others, so that none imports it.
+    # No module imports the package's own module, which is above all others.
     imported = sys.modules[__package__ or ""].IMPORTED
     digest = hashlib.sha256()
-    # Paths as texts: to sort and to compare hundreds of records of paths takes longer than to read the files.
+    # Paths are texts: sorting and comparing hundreds of Path objects takes longer than reading the files.
     files = sorted(f"{at}/{name}" for at, _, names in os.walk(root) for name in names if _is_source(name))
     for path in files:
         with FileIO(path) as file:
             facts = os.fstat(file.fileno())
-            # A file that is moved or linked into place keeps its own time; that of its entry in the folder changes.
+            # A file that is moved or linked into place keeps its own time; the time of its entry in the folder changes.
             if max(facts.st_mtime, facts.st_ctime) >= imported:
                 return None
             content = file.read()

@@ -1,4 +1,4 @@
-"""The methods that every result has: plain data, files, a figure, a few lines for a terminal and for a notebook."""
+"""Methods of every result: plain data, files, a figure, a few lines for a terminal and a notebook."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ class Shown:
     """Base of scenes, models and all results: a few lines for a terminal and a notebook."""
 
     def __repr__(self) -> str:
-        """The facts that matter, in at most ten lines."""
+        """The main facts, in at most ten lines."""
         text: str = _presentation().text_of(self)
         return text
 
@@ -19,7 +19,7 @@ class Shown:
         return repr(self)
 
     def _repr_html_(self) -> str:
-        """The lines of ``repr`` as a table, below them the figure of a result: what a notebook shows."""
+        """The lines of ``repr`` as a table, and the figure of a result below, for a notebook."""
         page: str = _presentation().html_of(self)
         return page
 
@@ -27,20 +27,20 @@ class Shown:
 class Result(Shown):
     """Base of solutions, paths, motions, modes, sweeps, fits and all other results.
 
-    How a kind of result is written, drawn and described is in :mod:`cosserat_casadi.results.presentation`. That module
-    stands above the rooms that compute, and loads when the first result is shown.
+    :mod:`cosserat_casadi.results.presentation` writes, draws and describes each kind of result. That module is above
+    the rooms that compute, and is loaded for the first result that is shown.
     """
 
     def to_dict(self) -> dict[str, Any]:
-        """The result as plain data, as its JSON file holds it; a number that is not finite becomes None."""
+        """The result as plain data, the content of its JSON file; a number that is not finite becomes None."""
         data: dict[str, Any] = _presentation().data_of(self)
         return data
 
     def to_dataframe(self) -> Any:
-        """The table of a motion, a path, a sweep or an estimate, as its CSV file holds it.
+        """The table of a motion, a path, a sweep or an estimate, with the content of its CSV file.
 
         Returns:
-            pandas.DataFrame, a row each of the CSV file.
+            pandas.DataFrame with a row for each row of the CSV file.
 
         Raises:
             SceneError: this kind of result has no table.
@@ -51,7 +51,7 @@ class Result(Shown):
     def to_xarray(self) -> Any:
         """The arrays of a motion over time, or of a sweep over its grid, with named axes and units.
 
-        A motion has the axis ``time``; of each rod its sections have the axis ``<rod>.X``. A sweep over every
+        A motion has the axis ``time``; the sections of each rod have the axis ``<rod>.X``. A sweep over every
         combination of its columns has an axis for each column, any other sweep the axis ``row``.
 
         Returns:
@@ -64,13 +64,13 @@ class Result(Shown):
         return _presentation().dataset_of(self)
 
     def write(self, path: Any) -> None:
-        """Write the result into a file, whole or not at all; the suffix says in which format.
+        """Write the result into a file atomically; the suffix decides on the format.
 
         Every result can be written as JSON (``.json``) and as a figure (``.png``, ``.pdf``, ``.svg``); some as a table
         too, solutions and motions of rods as meshes for Blender and the like (``.glb``, ``.usda``).
 
         Args:
-            path: of the file, a string or a Path.
+            path: path of the file, a string or a Path.
 
         Raises:
             SceneError: this kind of result has no file with that suffix.
@@ -83,7 +83,7 @@ class Result(Shown):
         """Figure of the result.
 
         Args:
-            options: ``colour`` of a sweep, the column that colours its points; ``title`` of Sobol indices.
+            options: for a sweep ``colour``, the column that colours its points; for Sobol indices ``title``.
 
         Returns:
             matplotlib.figure.Figure.
@@ -94,12 +94,12 @@ class Result(Shown):
         return _presentation().figure_of(self, **options)
 
     def animate(self, path: Any, **options: Any) -> Any:
-        """Draw a motion, a path or a mode as a film into a file, whole or not at all; the suffix says which.
+        """Draw a motion, a path or a mode as a film into a file atomically; the suffix decides on the format.
 
         Args:
-            path: of the file, a string or a Path: ``.gif`` or ``.mp4``; of a motion ``.glb`` or ``.usda`` too.
-            options: ``speed`` of a motion, 0.1 shows it ten times slower; ``mode``, the number of a mode, from 1;
-                ``progress``, a function that receives the share of the frames that are drawn.
+            path: path of the file, a string or a Path: ``.gif`` or ``.mp4``; for a motion ``.glb`` or ``.usda`` too.
+            options: ``speed`` of a motion, with 0.1 ten times slower; ``mode``, the number of a mode, from 1;
+                ``progress``, a function that receives the share of drawn frames.
 
         Returns:
             pathlib.Path of the file.

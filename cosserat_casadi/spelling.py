@@ -1,4 +1,4 @@
-"""Words of messages: known ones that an unknown one looks like, and counts with their nouns."""
+"""Words of messages: known words similar to an unknown one, and counts with nouns."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ import difflib
 from collections.abc import Iterable, Sequence
 
 FEW = 3
-"""Names that a sentence tells of many."""
+"""Most names in a sentence."""
 
 
 def closest(word: str, known: Iterable[str]) -> str:
-    """A remedy for an unknown word: the known one that it looks like, or all that are known."""
+    """A remedy for an unknown word: the most similar known word, or all known words."""
     words = list(known)
     return likely_meant(word, words) or f"known: {', '.join(words[:30])}"
 
 
 def likely_meant(word: str, known: Iterable[str]) -> str:
-    """A remedy that names the known word which looks most like an unknown one; empty where none does."""
+    """A remedy with the known word that is most similar to an unknown one; empty if none is similar."""
     # difflib takes time with the square of the length.
     close = difflib.get_close_matches(word[:40], known, n=1)
     return f"did you mean '{close[0]}'?" if close else ""
@@ -30,6 +30,6 @@ def counted(count: int, noun: str) -> str:
 
 
 def named(names: Sequence[object], most: int = FEW) -> str:
-    """The first of some names, and how many more there are, such as "a, b, c and 2 more"."""
+    """The first names and the number of the others, such as "a, b, c and 2 more"."""
     told = ", ".join(map(str, names[:most]))
     return told if len(names) <= most else f"{told} and {len(names) - most} more"

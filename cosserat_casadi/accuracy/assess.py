@@ -1,21 +1,21 @@
 """Faults that keep a solution on a uniform discretisation from being a reference solution.
 
-The verdicts, in the order in which they are looked for; each has its step in ``refine``:
+The verdicts, in the order of the tests; ``refine`` has a step for each:
 
 ====================  ==================================================================
-``NeedsNodes``        an interval turns too far, so the solution is not one of the rod
+``NeedsNodes``        an interval turns too far, so that the nodes do not resolve the rod
 ``NoEquilibrium``     the solve failed otherwise
-``NeedsModes``        the last coefficients are blind to a wave, or their fall promises too much error
+``NeedsModes``        the last coefficients cannot show a wave, or extrapolate to too much error
 ``NeedsFinerSums``    the sections at which layers are summed leave too much error
 ``NeedsFinerGrid``    the intervals leave too much error
-``NeedsModes``        a look at modes that the solution lacks finds too much error
+``NeedsModes``        an estimate with the missing modes finds too much error
 ``Enough``            the errors of modes and grid are small shares of the tolerance
 ====================  ==================================================================
 
-Coefficients are blind to a residual that polynomials cannot see: the balance of stress at nodes, where equations only
-balance its moments. Loads of fixed direction go round in the frame of a section that turns: over an element that turns
-by T the strain may oscillate with T/(2π) waves. Legendre coefficients of such a wave are nil up to a degree of about
-T/2, so with fewer modes nothing shows in the last coefficients, however wrong the rod is.
+Coefficients do not show a residual that is orthogonal to the polynomials: the equations balance moments of the stress,
+not the stress at nodes. Loads of fixed direction rotate in the frame of a section that turns: in an element that turns
+by T the strain may oscillate with T/(2π) waves. Legendre coefficients of such a wave are nearly zero up to a degree of
+about T/2, so with fewer modes the last coefficients are small, however wrong the rod is.
 """
 
 from __future__ import annotations
@@ -35,13 +35,13 @@ from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.rod.material_functions import stress_beyond_hooke
 
 BEYOND = 2
-"""Modes beyond T/2 from which on the coefficients of a wave show."""
+"""Modes beyond T/2 with which the coefficients of a wave show."""
 
 REFERENCE_SHARE = 0.15
-"""Share of the tolerance that the modes of a reference solution may be off by, its grid by a third of that."""
+"""Share of the tolerance for the error of a reference solution by its modes; its grid has a third of that."""
 
 SUM_SHARE = 0.25
-"""Share of the tolerance that sums of layers may be off by: answers on fewer modes have sums alike."""
+"""Share of the tolerance for the error of sums of layers: answers on fewer modes have equal sums."""
 
 FASTEST_SUMS = 3.0
 """Largest factor on the sections at which layers are summed: their error falls with the fourth power, about."""
@@ -50,13 +50,13 @@ FLOOR = 1e-13
 """Error of a reference solution that cannot be distinguished from rounding."""
 
 MOST_NODES = 400
-"""Intervals of an element beyond which a rod too bent for them is given up."""
+"""Most intervals of an element: a rod that these do not resolve is given up."""
 
 MOST_REFINED = 2.0
-"""Largest factor on intervals that do not resolve a rod: on more intervals it may be bent otherwise."""
+"""Largest factor on intervals that do not resolve a rod, which may bend otherwise on more intervals."""
 
 NODES_MARGIN = 1.2
-"""Factor on the intervals that would just resolve the rod as it is now."""
+"""Factor on the intervals that would just resolve the present shape of the rod."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class NeedsModes:
 
     Attributes:
         modes: per strain component and element.
-        extrapolated: whether their number follows from the rate of convergence, and so may be too large.
+        extrapolated: whether their number is extrapolated from the rate of convergence, and may be too large.
     """
 
     modes: int
@@ -95,7 +95,7 @@ class NeedsFinerSums:
     """Layers are summed at too few sections.
 
     Attributes:
-        factor: on their number.
+        factor: factor on their number.
     """
 
     factor: float
@@ -118,7 +118,7 @@ def assess(solution: Solution, tolerance: float, waves: bool = False) -> Verdict
     """Faults that keep a solution from being a reference for a tolerance.
 
     Args:
-        solution: on the same modes for every component, and the same intervals for every element.
+        solution: a solution with one number of modes for all components, and one of intervals for all elements.
         tolerance: wanted error of the tip poses.
         waves: whether the scene puts waves along its rods.
     """
@@ -140,8 +140,8 @@ def assess(solution: Solution, tolerance: float, waves: bool = False) -> Verdict
     if resolution.sum_error > sum_bound:
         growth = NODES_MARGIN * (resolution.sum_error / sum_bound) ** 0.25
         return NeedsFinerSums(min(growth, FASTEST_SUMS))
-    # What takes the equations on another grid is asked for last, the look at more modes after the cheaper one at a grid
-    # alone: on a grid that is too coarse both see its error.
+    # Estimates that need the equations on another grid come last, and the one with more modes after the cheaper one
+    # with a finer grid alone: on a grid that is too coarse both show its error.
     grid_bound = max(REFERENCE_SHARE / 3 * tolerance, FLOOR)
     if resolution.grid_error > grid_bound:
         return NeedsFinerGrid()
@@ -159,13 +159,13 @@ def _uniform(solution: Solution) -> tuple[int, int]:
 
 
 def _too_deep(solution: Solution) -> bool:
-    """Whether a rod is deeper inside an obstacle than its width, which more nodes do not change."""
+    """Whether a rod is deeper in an obstacle than the obstacle's width, which more nodes do not change."""
     return any(touch.gap is not None and touch.width and touch.gap < -touch.width for touch in solution.contacts)
 
 
 def _resolving_nodes(solution: Solution, nodes: int) -> int:
     """Intervals that should resolve a rod too bent for its grid."""
-    # Beyond 1 by the factor by which an interval turns too far.
+    # The index exceeds 1 by the factor by which an interval turns too far.
     resolution_index = solution.model.resolution_index(solution.x, solution.inputs)
     factor = NODES_MARGIN * float(resolution_index)
     return ceil(nodes * min(MOST_REFINED, factor))
@@ -204,16 +204,16 @@ def _stress_beyond_hooke(solution: Solution, name: str) -> FloatArray:
 
 
 def min_modes(solution: Solution, turn: float, tolerance: float) -> int:
-    """Modes for each strain from which on the last coefficients tell how well a rod is resolved; 0 where any do.
+    """Least modes of each strain whose last coefficients tell how well a rod is resolved; 0 if any number does.
 
     Args:
         solution: an equilibrium of the discrete model.
         turn: largest turn of an element, rad.
-        tolerance: strain that does not matter.
+        tolerance: strain below which an error does not matter.
     """
     needed = ceil(turn / 2) + BEYOND
     fewest = min(min(d.modes) for d in solution.model.discretisation.values())
-    # Within one turn there is no whole wave to miss.
+    # An element within one turn has no whole wave to miss.
     if fewest >= needed or turn <= 2 * np.pi:
         return 0
     if node_residual(solution) <= tolerance:

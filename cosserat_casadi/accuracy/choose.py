@@ -1,7 +1,7 @@
 """One discretisation for ranges of inputs or for load cases, verified on all of them.
 
-No grid is solved over ranges. Corners and random points are; then the worst point climbs along the ends of its inputs,
-and fresh points are tried, until none is beyond the tolerance (docs/theory.md, section 10).
+Ranges are not solved on a grid of points, but at corners and random points. Then the worst point climbs along the ends
+of its inputs, and fresh points are tried, until all are within the tolerance (docs/theory.md, section 10).
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ SEED = 31
 """Seed of the random points, so that a choice can be repeated."""
 
 SAMPLES = 16
-"""Random corners that are solved, and random points too; as many fresh points are tried in the end."""
+"""Number of random corners, and of random points, that are solved; as many fresh points are tried in the end."""
 
 SAMPLES_IN_CONTACT = 2
-"""Random corners, random points and fresh points where a solve takes seconds: in exact contact, where which contacts
-are closed is found anew at each point, and beside smooth obstacles so thin that they ask for many intervals. There
-neither the ends of each range alone are tried, nor does the worst point climb."""
+"""Random corners, random points and fresh points where a solve takes seconds: in exact contact, in which each point
+needs a search for its contacts, and beside smooth obstacles so thin that they need many intervals. The ends of each
+range alone are then not tried, and the worst point does not climb."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -46,17 +46,16 @@ class Choice(Shown):
 
     Attributes:
         scene: the scene with this discretisation fixed, and the ranges that it was chosen for.
-        model: of that scene.
+        model: model of that scene.
         ranges: ranges of the inputs and parameters that it was chosen for, entry by entry.
-        solves: points of the ranges, or load cases, that were solved on it, or on fewer modes if these already left an
-            error well within the tolerance.
-        error_estimate: the largest of their estimates; None where none has an equilibrium.
+        solves: number of points of the ranges, or load cases, that were solved on it, or on fewer modes with an error
+            well within the tolerance.
+        error_estimate: the largest of their estimates; None if none has an equilibrium.
         worst: inputs and parameters of the point with that estimate.
         without_equilibrium: inputs and parameters of the points at which no equilibrium was found.
-        locked: names of the inputs that move nothing on this discretisation, and would on more modes: of one that the
-            scene fixes.
-        met: whether the error is within the tolerance wherever there is an equilibrium, every load case that was asked
-            for has one, and no input is locked.
+        locked: names of the inputs that move nothing on a discretisation that the scene fixes, but would on more modes.
+        met: whether the error of all equilibria is within the tolerance, every given load case has an equilibrium, and
+            no input is locked.
     """
 
     scene: scenes.Scene
@@ -71,7 +70,7 @@ class Choice(Shown):
 
     @property
     def verified(self) -> Verified:
-        """Ranges, solves and errors as an exported folder tells them."""
+        """Ranges, solves and errors for an exported folder."""
         return Verified(
             self.ranges.described,
             self.solves,
@@ -83,7 +82,7 @@ class Choice(Shown):
 
     @property
     def within_tolerance(self) -> bool | None:
-        """Whether the tolerance is met; None where modes are fixed, and nobody asks for a tolerance."""
+        """Whether the tolerance is met; None with fixed modes and no given tolerance."""
         return self.met if self.scene.accuracy.binds else None
 
 
@@ -96,21 +95,20 @@ def choose(
     *,
     cases: Sequence[Values] | None = None,
 ) -> Choice:
-    """The smallest discretisation found that keeps the tolerance all over ranges, or at every one of some load cases.
+    """The smallest discretisation found that meets the tolerance over ranges, or in all given load cases.
 
-    Modes, nodes and rotation that the scene fixes stay as they are, and are verified.
+    Modes, nodes and rotation that the scene fixes are kept and verified.
 
     Args:
         scene: a validated scene.
         ranges: pairs of lower and upper end by column, such as ``push.force.x``, or by the name of an input or a
             parameter; for all else see :func:`cosserat_casadi.accuracy.ranges.input_ranges`.
         tolerance: wanted error of the tip poses relative to length; the scene's own by default.
-        progress: told how many points are solved.
-        samples: random corners that are tried, and as many random points, beside the ends of each range alone and of
-            all; by default 16. In exact contact and beside thin obstacles that rub by default 2, and the ends of each
-            range alone are left out.
-        cases: inputs and parameters by name, at least one case, in place of ranges; what a case does not name keeps the
-            scene's value.
+        progress: receives the number of solved points.
+        samples: number of random corners, and of random points, in addition to the ends of each range alone and of all;
+            by default 16. In exact contact and beside thin obstacles that rub by default 2, and the ends of each range
+            alone are left out.
+        cases: inputs and parameters by name, at least one case, instead of ranges; others keep the scene's values.
 
     Raises:
         SceneError: a range, a case or the tolerance is refused.
@@ -145,11 +143,11 @@ class _Search:
     """Points of ranges, and the search for the discretisation that serves them.
 
     Attributes:
-        scene: whose tolerance is wanted.
-        ranges: over which.
-        progress: told how many points are solved.
-        points: cases that are tried, in the order in which they were made.
-        samples: random points of each sort.
+        scene: the scene, with its tolerance.
+        ranges: the ranges of inputs and parameters.
+        progress: receives the number of solved points.
+        points: tried cases, in the order in which they were added.
+        samples: number of random points of each sort.
     """
 
     scene: scenes.Scene
@@ -165,7 +163,7 @@ class _Search:
         self.takes_long = self.scene.touches_exactly or is_thin(self.scene)
 
     def add(self, points: Iterable[FloatArray]) -> list[int]:
-        """Add points; return their numbers."""
+        """Add points and return their indices."""
         new = list(points)
         self.points += new
         return self.modes.added(self._case(point) for point in new)
@@ -182,7 +180,7 @@ class _Search:
         self.add([self._own_point])
         if self.ranges.moving.size:
             self.samples = samples
-            # Corners, where errors are largest as a rule, come first.
+            # Corners, which usually have the largest errors, come first.
             ends = [] if self.takes_long else self._ends()
             self.add([*self._corners(), *ends, self.ranges.lower, self.ranges.upper, *self._inner()])
 
@@ -238,10 +236,10 @@ class _Search:
         return made
 
     def verdict(self, answers: Answers, *, every: bool) -> Choice:
-        """The record of a discretisation, with an answer at every point.
+        """The choice of a discretisation, with an answer at every point.
 
         Args:
-            answers: on that discretisation.
+            answers: answers on that discretisation.
             every: whether every point must have an equilibrium.
         """
         chosen = on_elements_of(self.scene, answers.chosen)

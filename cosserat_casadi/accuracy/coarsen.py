@@ -1,9 +1,9 @@
 """The cheapest discretisation whose tips stay within a bound of the tips of a reference solution.
 
-Modes go first: each strain component of each rod keeps as few as its effect on the tips allows, which a tail of
-coefficients does not tell. Then every rod gets the cheapest grid: intervals and order of the rotation integrator
-together, since a low order with more intervals may cost less than a high one. What slack is left goes into modes again.
-All of it is read off previews, exact to a per cent or so; no model is built.
+Modes are dropped first: each strain component of each rod keeps as few as its effect on the tips allows, which a tail
+of coefficients does not tell. Then every rod gets the cheapest grid, intervals and order of the rotation integrator
+together, since a low order with more intervals may cost less than a high one. The remaining slack drops further modes.
+All changes are taken from previews, exact to about a per cent; no model is built.
 """
 
 from __future__ import annotations
@@ -29,50 +29,50 @@ TRANSPORTS = ((1e-4, ("magnus4",)), (1e-6, ("magnus6", "magnus4")), (0.0, ("magn
 """Rotation integrators that may be the cheapest for bounds down to one, the likely one first."""
 
 WAVE_STEPS = (8, 1)
-"""Modes dropped at once where waves ask for many modes, one number after the other; else one at a time."""
+"""Numbers of modes dropped at once in scenes with waves, which need many modes; else one at a time."""
 
 MOST_TRIALS = 4
 """Most grids previewed for one rod and one integrator: each costs about a third of building a model."""
 
 LIKELY = 1.35
-"""Intervals for each mode of the component that has most, where a search begins."""
+"""Intervals for each mode of the component with most modes, at the start of a search."""
 
 LEAST_LIKELY = 1.15
 """Intervals for each mode below which a second integrator is not tried."""
 
 POWERS = {"magnus4": 4.5, "magnus6": 7.0, "magnus8": 9.0}
-"""Powers of the intervals with which the change of the tips falls where only one grid is known."""
+"""Powers of the intervals with which the change of the tips is assumed to fall if one grid is known."""
 
 STEEPEST = 30.0
-"""Largest power that is believed where two grids are known."""
+"""Largest power that is assumed from two grids."""
 
 FLATTEST = 4.0
-"""Smallest power that is believed where two grids are known."""
+"""Smallest power that is assumed from two grids."""
 
 AIM = 0.7
-"""Share of the bound that the next grid is aimed at."""
+"""Share of the bound at which the next grid is aimed."""
 
 FEWEST = 2
-"""Chebyshev intervals below which nothing is tried."""
+"""Least number of Chebyshev intervals."""
 
 NODES_MARGIN = 1.1
 """Factor on the intervals that would just resolve the reference: a coarser rod may turn a little more somewhere."""
 
 UNBOUNDED = 1e9
-"""Excess of a grid that does not resolve the rod at all, so that its tips may be anything, no numbers too."""
+"""Excess of a grid that does not resolve the rod, so that its tips may be arbitrary, even NaN."""
 
 ROUNDING = 1e-9
-"""Smallest excess of a grid that is told from rounding."""
+"""Smallest excess of a grid above rounding."""
 
 
 def alike_rods(model: Model) -> list[tuple[str, ...]]:
-    """Rods that are discretised alike: in an assembly all that admit the same strains, else each for itself."""
+    """Groups of rods with one discretisation: in an assembly rods with the same admitted strains, else each rod."""
     discrete = model.discrete
     if not discrete.is_assembly:
         return [(name,) for name in discrete.rods]
     groups: dict[object, tuple[str, ...]] = {}
     for name, discrete_rod in discrete.rods.items():
-        # One choice for all: their kernels can then be shared in generated code.
+        # One choice for a group lets generated code share its kernels.
         key = (discrete_rod.properties.admitted, discrete_rod.grid.elements)
         group = groups.get(key, ())
         groups[key] = (*group, name)
@@ -86,8 +86,8 @@ class Coarsening:
     Attributes:
         preview: the reference, and the changes that it foresees.
         bound: largest change of a tip pose: distance over length, angle in rad.
-        wave_modes: modes that waves along a rod ask for, 0 where there are none: on fewer intervals a wave passes for
-            a longer one, and the residual there is too far off to be foreseen.
+        wave_modes: modes that waves along a rod need, 0 without waves: on fewer intervals a wave is aliased to a longer
+            one, and the residual is too wrong for a preview.
     """
 
     preview: Preview
@@ -109,7 +109,7 @@ class Coarsening:
         return chosen, unknowns[kept]
 
     def rod_time(self, name: str, discretisation: Discretisation) -> float:
-        """Foreseen time of one rod, µs."""
+        """Predicted time of one rod, µs."""
         model = self.preview.model
         rod = model.discrete.rods[name].properties
         spread = spread_on(model.scene, name)
@@ -117,11 +117,11 @@ class Coarsening:
 
     @cached_property
     def alike(self) -> list[tuple[str, ...]]:
-        """Rods that are discretised alike."""
+        """Groups of rods with one discretisation."""
         return alike_rods(self.preview.model)
 
     def _scene_time(self, grids: Mapping[str, Discretisation], modes: Modes) -> float:
-        """Foreseen time of all rods together, µs."""
+        """Predicted time of all rods together, µs."""
         time = 0.0
         for name, grid in grids.items():
             discretisation = replace(grid, modes=modes[name])
@@ -143,26 +143,26 @@ class Coarsening:
         return best
 
     def _starting_modes(self, modes: Modes, grid_shift: FloatArray) -> list[Modes]:
-        """Modes to drop more from: the argument, and all that are left below lower ceilings within the bound.
+        """Starts for dropping modes: the argument, and its modes below each lower ceiling that is within the bound.
 
-        Changes of the components may make up for each other: fewer modes everywhere may do where one less does not.
+        Changes of the components may cancel: fewer modes everywhere may be within the bound while one less is not.
         """
         starts: list[Modes] = [modes]
         for ceiling in range(_most(modes) - 1, 0, -1):
             trial = _below_ceiling(modes, ceiling)
-            # Lower ceilings leave out what this one leaves out, and more.
+            # Lower ceilings leave out these modes too, and more.
             if self._largest_shift(trial, grid_shift) > self.bound:
                 break
             starts.append(trial)
         return starts
 
     def _drop_modes(self, modes: Modes, grid_shift: FloatArray, bound: float) -> dict[str, tuple[int, ...]]:
-        """Modes dropped step by step, each time where most cost goes for the least change of the tips.
+        """Drop modes step by step, each time the one with the least change of the tips for its cost.
 
         Args:
-            modes: where to begin.
-            grid_shift: change of the tips that the grids make.
-            bound: on the change of the tips that modes alone make, and on that which both make together.
+            modes: modes to begin with.
+            grid_shift: change of the tips by the grids.
+            bound: bound on the change of the tips by modes alone, and by modes and grids together.
         """
         current = dict(modes)
         steps = WAVE_STEPS if self.wave_modes else (1,)
@@ -177,7 +177,7 @@ class Coarsening:
         grid_shift: FloatArray,
         bound: float,
     ) -> dict[str, tuple[int, ...]]:
-        """Modes dropped so many at a time."""
+        """Drop ``step`` modes at a time."""
         current = dict(modes)
         droppable: set[tuple[tuple[str, ...], int]] = set()
         for names in self.alike:
@@ -193,7 +193,8 @@ class Coarsening:
                 trial = _fewer(current, names, component, step)
                 shift = self._largest_shift(trial, grid_shift)
                 if not shift <= bound:
-                    # What a component gives up grows with what others have: it stays closed.
+                    # The change by dropping a mode grows as others are dropped: a component that has failed once is not
+                    # tried again.
                     droppable.discard((names, component))
                     continue
                 rate = shift / self._mode_weight(names[0], component)
@@ -234,14 +235,14 @@ class Coarsening:
 
 @dataclass
 class _GridSearch:
-    """Search for the grid of rods that are discretised alike; grids of other rods are kept.
+    """Search for the grid of a group of rods; grids of other rods are kept.
 
     Attributes:
-        coarsening: bound and preview.
+        coarsening: the search below the reference, with bound and preview.
         modes: modes of every rod.
         grids: discretisations of every rod.
         names: the rods.
-        shift_before: change of the tips that the grids make now.
+        shift_before: change of the tips by the present grids.
     """
 
     coarsening: Coarsening
@@ -253,12 +254,12 @@ class _GridSearch:
 
     @property
     def name(self) -> str:
-        """The first of the rods, which stands for all."""
+        """Name of the first rod of the group, which represents all."""
         return self.names[0]
 
     def cheapest(self) -> tuple[Discretisation, FloatArray]:
         """The cheapest grid within the bound and the change of the tips with it."""
-        # The grid of the reference is known to do, if nothing cheaper is found.
+        # The grid of the reference is sufficient, if nothing cheaper is found.
         start = self.grids[self.name]
         best = start
         best_time = np.inf
@@ -272,7 +273,7 @@ class _GridSearch:
         return best, shift
 
     def _candidate_transports(self) -> tuple[str, ...]:
-        """Rotation integrators to compare; all are one where a rod turns about one axis."""
+        """Rotation integrators to compare; for a rod that turns about one axis all are equal."""
         suitable = (names for least, names in TRANSPORTS if self.coarsening.bound >= least)
         transports = next(suitable)
         rod = self.coarsening.preview.model.discrete.rods[self.name].properties
@@ -285,8 +286,8 @@ class _GridSearch:
 
         Args:
             transport: the integrator.
-            most: number of intervals beyond which it is too expensive.
-            first: whether no integrator is known to do yet.
+            most: largest affordable number of intervals.
+            first: whether no sufficient integrator is known yet.
 
         Returns:
             None if none do.
@@ -299,7 +300,7 @@ class _GridSearch:
             least_promising: float = self._fewest_resolving
             guess = min(most, max(likely, insufficient + 1))
         else:
-            # Only where all that is affordable does, fewer intervals are of interest.
+            # Fewer intervals are tried only if the largest affordable number is sufficient.
             least_promising = LEAST_LIKELY / LIKELY * likely
             guess = most
         if most < least_promising:
@@ -319,7 +320,7 @@ class _GridSearch:
         return sufficient
 
     def _aimed(self, transport: str, nodes: int) -> int:
-        """Intervals that should just do: the change by the grid alone falls like a high power of their number."""
+        """Intervals that should just suffice: the change by the grid falls with a high power of their number."""
         power = POWERS[transport]
         excess = self._excess(transport, nodes)
         compared = [n for name, n in self._shifts if name == transport and n != nodes]
@@ -330,7 +331,7 @@ class _GridSearch:
             power = float(np.clip(slope, FLATTEST, STEEPEST))
         # The excess falls with this power; it is to come down to the aim.
         factor = (excess / AIM) ** (1 / power)
-        # A tenth of an interval too many is not worth a whole one.
+        # A tenth of an interval is not rounded up to a whole one.
         return int(np.ceil(nodes * factor - 0.1))
 
     def _within(self, transport: str, nodes: int) -> bool:
@@ -338,20 +339,20 @@ class _GridSearch:
         grid_shift = self._shift(transport, nodes)
         mode_shift = self.coarsening.preview.mode_shift(self.modes)
         excess = self._excess(transport, nodes)
-        # Grids alone too: a change that happens to cancel that of the modes would be luck.
+        # Grids alone are tested too: a change that cancels the change by modes would be chance.
         together = grid_shift + mode_shift
         excess_together = change_size(together) / self.coarsening.bound
         return max(excess, excess_together) <= 1
 
     def _excess(self, transport: str, nodes: int) -> float:
-        """Change of the tips by grids alone over the bound; rounding apart, and bounded where nothing is resolved."""
+        """Change of the tips by grids alone over the bound; at least rounding, and bounded for unresolved rods."""
         excess = change_size(self._shift(transport, nodes)) / self.coarsening.bound
         if excess < UNBOUNDED:
             return max(excess, ROUNDING)
         return UNBOUNDED
 
     def _shift(self, transport: str, nodes: int) -> FloatArray:
-        """Change of the tips with this grid on the rods that are discretised alike."""
+        """Change of the tips with this grid on the rods of the group."""
         key = (transport, nodes)
         if key not in self._shifts:
             trial = dict(self.grids)
@@ -362,14 +363,14 @@ class _GridSearch:
 
     @cached_property
     def _fewest_resolving(self) -> int:
-        """Intervals below which one would turn too far, from the turns of the reference."""
+        """Least intervals none of which turns too far, from the turns of the reference."""
         reference = self.coarsening.preview.reference
         model = reference.model
         nodes = model.discretisation[self.name].nodes
         # The turn of an interval is inverse to their number.
         resolution_index = float(model.resolution_index(reference.x, reference.inputs))
         resolving = resolution_index * nodes
-        # Where sections sum layers the tips allow few nodes; on fewer than modes no look at an error settles.
+        # If sections sum layers the tips allow few nodes; with fewer nodes than modes no error estimate settles.
         modes = max(self.modes[self.name]) + 1 if self.grids[self.name].sections else 0
         return max(FEWEST, ceil(NODES_MARGIN * resolving), self.coarsening.wave_modes, modes)
 
@@ -393,8 +394,8 @@ class _GridSearch:
 
 
 def _fewer(modes: Modes, names: tuple[str, ...], component: int, step: int) -> dict[str, tuple[int, ...]]:
-    """Modes with ``step`` modes less of a component of some rods, which keeps its last mode."""
-    # Rods that are discretised alike have the same modes.
+    """Modes with ``step`` modes less for a component of some rods, which keeps one mode at least."""
+    # Rods of a group have equal modes.
     counts = list(modes[names[0]])
     counts[component] = max(1, counts[component] - step)
     changed = dict.fromkeys(names, tuple(counts))
@@ -402,7 +403,7 @@ def _fewer(modes: Modes, names: tuple[str, ...], component: int, step: int) -> d
 
 
 def _below_ceiling(modes: Modes, ceiling: int) -> dict[str, tuple[int, ...]]:
-    """Modes with no component above a ceiling."""
+    """Modes limited to a ceiling in each component."""
     lowered = {}
     for name, counts in modes.items():
         lowered[name] = tuple(min(m, ceiling) for m in counts)

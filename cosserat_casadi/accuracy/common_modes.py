@@ -1,13 +1,13 @@
 """One discretisation for many cases, refined where the estimated error is largest (docs/theory.md, section 10).
 
-It begins with what the first case needs. All cases are solved on it, each with the estimate of its error; where that is
-largest, modes and intervals are added that the answer lacks, until no case is beyond its tolerance. On a richer
-discretisation a case begins at its answer on the last one, so that it stays the same equilibrium and takes two or three
+The search begins with the discretisation that the first case needs. All cases are solved on it with error estimates;
+the modes and intervals that the worst answers lack are added, until all cases are within their tolerance. On a richer
+discretisation a case begins at its answer on the last one, so that it keeps its equilibrium and takes two or three
 Newton steps.
 
-The modes and intervals that an answer lacks are told by the correction that tells its error: the missing coordinates of
-a settled correction say how much there would be of each mode that the answer lacks. A mode is added where that lessens
-most what the rest of them would still change, until little is left of it.
+The correction that estimates the error of an answer also gives the modes and intervals that it lacks: the missing
+coordinates of a settled correction are the amplitudes of the missing modes. The mode whose addition reduces the change
+by the other missing modes most is added, until this change is small.
 """
 
 from __future__ import annotations
@@ -47,46 +47,46 @@ from cosserat_casadi.numerics.progress import CountProgress
 from cosserat_casadi.rod.discretisation import Discretisation
 
 MODES_SHARE = 0.6
-"""Share of the tolerance that modes which are still missing may leave."""
+"""Share of the tolerance for the error by modes that are still missing."""
 
 GRID_SHARE = 0.25
-"""Share of the tolerance that the grid may leave."""
+"""Share of the tolerance for the error by the grid."""
 
 MOST_ADDED = ((100.0, 3), (10.0, 2))
-"""Errors over the tolerance, and the modes that a strain may gain in one step beyond each; one below them.
+"""Errors over the tolerance, and the most modes that a strain gains in one step above each; one mode below.
 
-The nearer an answer is, the better is known which modes it lacks, and the more a mode to spare would weigh.
+A nearer answer tells its missing modes better, and a superfluous mode would cost relatively more.
 """
 
 MOST_GROWTH = 1.5
-"""Factor by which intervals grow at most in one step, beyond one more: the errors that foresee them are rough."""
+"""Largest factor on the intervals in one step, plus one interval: the errors that predict them are rough."""
 
 NEXT_ORDER = {"magnus4": "magnus6"}
-"""Rotation integrator that takes over where many more intervals would be needed."""
+"""Rotation integrator that is chosen if many more intervals would be needed."""
 
 WORST = 3
-"""Cases with the largest errors whose lack is made up at once."""
+"""Number of cases with the largest errors that are refined at once."""
 
 FAR = 3.0
-"""Error over the tolerance that is far beyond it."""
+"""Error over the tolerance that counts as far above it."""
 
 ENOUGH_FAR = 6
-"""Cases far beyond the tolerance after which a discretisation is left, and others are not solved on it."""
+"""Number of cases far above the tolerance after which a discretisation is abandoned for the other cases."""
 
 AIM = 0.5
-"""Share of the tolerance that is aimed at: a round with a new discretisation costs more than a mode to spare."""
+"""Share of the tolerance at which a refinement aims: another round costs more than a superfluous mode."""
 
 WELL_WITHIN = 0.5
-"""Share of its tolerance within which the error of a case must be so that it is not solved again on more modes."""
+"""Share of its tolerance below which the error of a case must be to spare a new solve on more modes."""
 
 MOST_ROUNDS = 12
-"""Discretisations that are tried at most."""
+"""Most discretisations that are tried."""
 
 FEW_MODES, FEW_NODES = 2, 6
-"""Modes and intervals to begin with where the first case has no equilibrium."""
+"""First modes and intervals if the first case has no equilibrium."""
 
 THIN_MODES, MORE_NODES = 3, 1.5
-"""Modes to begin with beside thin obstacles, and the factor on the intervals that these ask for."""
+"""First modes beside thin obstacles, and factor on the intervals that these ask for."""
 
 Values = Mapping[str, npt.ArrayLike]
 
@@ -96,9 +96,9 @@ class LoadCase:
     """A scene at some inputs.
 
     Attributes:
-        scene: whose modes and nodes are to be chosen, unless it fixes them.
-        inputs: by name.
-        parameters: by name; None where the scene has none.
+        scene: scene with modes and nodes to choose, unless it fixes them.
+        inputs: inputs by name.
+        parameters: parameters by name; None for a scene without any.
     """
 
     scene: scenes.Scene
@@ -117,7 +117,7 @@ class Answers:
     def model_of(self, case: LoadCase) -> Model:
         """The model of a case; cases of one scene share it."""
         scene = case.scene
-        # By identity: hashes of scenes cost as much as a solve, and the cases keep the scenes alive.
+        # Scenes are compared by identity: their hashes cost as much as a solve, and the cases keep the scenes alive.
         if id(scene) not in self._models:
             self._models[id(scene)] = build(scene, on_elements_of(scene, self.chosen))
         return self._models[id(scene)]
@@ -128,9 +128,9 @@ class CommonModes:
     """A search for one discretisation that serves many cases.
 
     Attributes:
-        cases: in the order in which they were made; at least one.
-        progress: told how many solves are done.
-        settles: whether rods that snap to obstacles as loads grow are let settle there; in the first case they are.
+        cases: cases in the order in which they were added; at least one.
+        progress: receives the number of solves.
+        settles: whether rods that snap to obstacles along the load path relax there; in the first case they do.
     """
 
     cases: list[LoadCase]
@@ -144,19 +144,19 @@ class CommonModes:
 
     @property
     def without_equilibrium(self) -> list[int]:
-        """Numbers of the cases for which no equilibrium was found."""
+        """Indices of the cases without an equilibrium."""
         return sorted(self._failed | self._hopeless)
 
     def added(self, cases: Iterable[LoadCase]) -> list[int]:
-        """Add cases; return their numbers."""
+        """Add cases and return their indices."""
         first = len(self.cases)
         self.cases += cases
         return list(range(first, len(self.cases)))
 
     def error(self, answers: Answers, number: int) -> float:
-        """Estimated error of a case, which is solved where it was not; -inf without an equilibrium.
+        """Estimated error of a case, which is solved if necessary; -inf without an equilibrium.
 
-        A case whose error is well within its tolerance on fewer modes is not solved again: that error is a bound.
+        A case with an error well within its tolerance on fewer modes is not solved again: that error is a bound.
         """
         if number not in answers.solutions:
             if number in self._failed or number in self._hopeless:
@@ -166,27 +166,27 @@ class CommonModes:
         return _estimate(self._answer(answers, number))
 
     def worst(self, answers: Answers) -> tuple[int, float]:
-        """Number and error of the case with the largest error, which is solved on this discretisation."""
+        """Index and error of the case with the largest error, which is solved on this discretisation."""
         while True:
             errors = [self.error(answers, number) for number in range(len(self.cases))]
             number = int(np.argmax(errors))
             if number in answers.solutions or np.isneginf(errors[number]):
                 return number, errors[number]
-            # A bound from fewer modes: what it is here may be less than that of others.
+            # A bound from fewer modes is not enough: the error here may be below the errors of other cases.
             self._answer(answers, number)
 
     def locked(self, answers: Answers) -> tuple[str, ...]:
-        """Names of the inputs that move nothing in the first case on this discretisation, and would on more modes."""
+        """Names of the inputs that move nothing in the first case on this discretisation, but would on more modes."""
         first = self._answer(answers, 0)
         if not first.converged or first.model.scene.touches_exactly:
             return ()
         return locked_inputs(first)
 
     def refined(self, more: Callable[[Answers], Iterable[list[int]]] = lambda answers: ()) -> Answers:
-        """Answers on a discretisation on which no case is beyond its tolerance; on the last that was tried without.
+        """Answers on a discretisation with all cases within their tolerance, or on the last one that was tried.
 
         Args:
-            more: adds cases, batch after batch, once those before are within the tolerance on a discretisation; none by
+            more: function that adds cases, batch after batch, once all before are within the tolerance; none by
                 default.
         """
         chosen = self._unlocked(self._first())
@@ -208,8 +208,8 @@ class CommonModes:
     def _first_beyond(
         self, answers: Answers, hardest: list[int], more: Callable[[Answers], Iterable[list[int]]]
     ) -> list[int]:
-        """Cases beyond the tolerance of the first batch that has any, the worst first."""
-        # One batch after the other: what adds cases looks at the answers at those before.
+        """Cases above the tolerance in the first batch that has any, the worst first."""
+        # One batch after the other, since adding cases uses the answers of the cases before.
         for batch in chain((hardest, range(len(self.cases))), more(answers)):
             beyond = self._beyond(answers, batch)
             if beyond:
@@ -217,7 +217,7 @@ class CommonModes:
         return []
 
     def _beyond(self, answers: Answers, numbers: Iterable[int]) -> list[int]:
-        """Cases beyond their tolerance, the worst first; far beyond it a few say enough of what modes are missing."""
+        """Cases above their tolerance, the worst first; a few cases far above it suffice to tell the missing modes."""
         beyond: dict[int, float] = {}
         far = 0
         for number in numbers:
@@ -233,15 +233,15 @@ class CommonModes:
         return self.cases[number].scene.accuracy.tolerance
 
     def _enough(self, answers: Answers, number: int) -> Chosen:
-        """The discretisation that a case needs whose error exceeds its tolerance."""
+        """The discretisation that a case with an error above its tolerance needs."""
         solution = answers.solutions[number]
         if solution.model.scene.touches_exactly:
-            # Its elements end at contacts: what it lacks is not what the free rod lacks.
+            # Its elements end at contacts, so that its missing modes are not those of the free rod.
             return with_more_modes(answers.chosen)
         return enough_for(solution, AIM * self._tolerance(number))
 
     def _answer(self, answers: Answers, number: int) -> Solution:
-        """The answer of a case, which is solved where it was not."""
+        """The answer of a case, which is solved if necessary."""
         if number not in answers.solutions:
             solution = self._solved(answers, number)
             answers.solutions[number] = solution
@@ -266,19 +266,19 @@ class CommonModes:
         return solution
 
     def _start(self, answers: Answers, number: int, model: Model) -> Start:
-        """Where a solve begins: at the case's answer on fewer modes, else at the first case's, else unloaded."""
+        """Start of a solve: the case's answer on fewer modes, else the first case's answer, else the unloaded scene."""
         case = self.cases[number]
         last = self._last.get(number)
         if last is not None:
             return last if case.scene.touches_exactly else prolong(last, model)
         if number == 0 or case.scene is not self.cases[0].scene or case.parameters is not None:
             return None
-        # On more modes the first case, which is well within its tolerance, may not have been solved yet.
+        # The first case may not have been solved on these modes, if it was well within its tolerance on fewer.
         first = self._answer(answers, 0)
         return first if first.converged else None
 
     def _unloaded(self, number: int, model: Model) -> Start:
-        """The unloaded scene as a start; as zeros, from which rods that snap on the way are not let settle."""
+        """The unloaded scene as a start; given as unknowns, so that rods that snap along the path do not relax."""
         if number == 0 or self.settles or not has_barriers(model.scene):
             return None
         return np.zeros(model.size)
@@ -288,7 +288,7 @@ class CommonModes:
         if self.progress is not None:
             self.progress(self._solves, max(self._solves, 2 * len(self.cases)))
         accuracy = case.scene.accuracy
-        # Of most scenes the tips alone count, which are estimated with less effort than shapes and wrenches.
+        # In most scenes only the tips count, which are cheaper to estimate than shapes and wrenches.
         tips_alone = not accuracy.shape and not case.scene.touches_exactly
         solution = solve(model, case.inputs, parameters=case.parameters, start=start, estimate_error=not tips_alone)
         if not tips_alone or not solution.converged:
@@ -302,13 +302,13 @@ class CommonModes:
         if case.parameters:
             scene = parameter_layout(scene).set_in(scene, case.parameters)
         if is_thin(scene):
-            # A search for this case alone would take longer than all others together.
+            # A search for this case alone would take longer than all other cases together.
             return discretise(case.scene, THIN_MODES, ceil(MORE_NODES * layer_nodes(scene)))
         own = solve_rods(scene, case.inputs)
         if not own.converged:
             return discretise(case.scene, FEW_MODES, FEW_NODES)
         if not case.parameters:
-            # It is an answer of this case already, from which the next one begins.
+            # It is an answer of this case, from which its next solve begins.
             self._last[0] = own
         return own.model.discretisation
 
@@ -319,12 +319,12 @@ class CommonModes:
         return chosen
 
     def _regained(self, answers: Answers) -> list[int]:
-        """Cases that have an equilibrium on these modes and had none on fewer."""
+        """Cases with an equilibrium on these modes, but none on fewer."""
         failed = [number for number in sorted(self._failed) if number not in answers.solutions]
         return [number for number in failed if self._answer(answers, number).converged]
 
     def _lost(self, chosen: Chosen) -> bool:
-        """Whether a case without an equilibrium has one on more modes; one that has none there either is given up."""
+        """Whether a case without an equilibrium has one on more modes; a case without one there either is given up."""
         richer = Answers(with_more_modes(with_more_modes(chosen)))
         lost = []
         for number in sorted(self._failed):
@@ -338,7 +338,7 @@ class CommonModes:
 
 
 def _estimate(solution: Solution) -> float:
-    """Estimated error, of the shape where the scene asks for that; -inf without an equilibrium."""
+    """Estimated error, of the shape if the scene asks for it; -inf without an equilibrium."""
     if not solution.converged:
         return -np.inf
     shape = solution.model.scene.accuracy.shape
@@ -347,15 +347,15 @@ def _estimate(solution: Solution) -> float:
 
 
 def enough_for(solution: Solution, tolerance: float) -> Chosen:
-    """The discretisation of an answer with the modes and intervals added that its error asks for.
+    """The discretisation of an answer plus the modes and intervals that its error asks for.
 
     Args:
-        solution: a converged one, whose estimated error is above the tolerance.
+        solution: a converged solution with an estimated error above the tolerance.
         tolerance: wanted error.
     """
     settled, correction = believed_correction(solution)
     if not settled:
-        # What the answer lacks is not known, but it is far from right: more of everything.
+        # The missing modes are unknown, but the error is large: more of everything.
         return with_more_modes(with_more_modes(solution.model.discretisation))
     return _Lack(solution, correction.missing, correction.change, tolerance / safety_for(solution.model)).made_up()
 
@@ -375,9 +375,9 @@ class _Lack:
 
     Attributes:
         solution: the answer.
-        missing: how much there would be of the modes that it lacks, shape (missing,).
-        error: change that these modes make.
-        bound: on the change that modes and intervals make which are still missing.
+        missing: coordinates of the missing modes, shape (missing,).
+        error: change by these modes.
+        bound: bound on the change by modes and intervals that are still missing.
     """
 
     solution: Solution
@@ -386,7 +386,7 @@ class _Lack:
     bound: float
 
     def made_up(self) -> Chosen:
-        """The discretisation with the modes and intervals that are needed."""
+        """The discretisation with all needed modes and intervals."""
         chosen: Chosen = dict(self.solution.model.discretisation)
         by_grid = self._change(np.zeros_like(self.missing))
         enough = max(MODES_SHARE * self.bound, 1.1 * by_grid)
@@ -403,7 +403,7 @@ class _Lack:
         return chosen
 
     def _with_one_more(self, chosen: Chosen) -> list[Chosen]:
-        """Discretisations with one more mode of a strain, where the answer's correction has such a mode."""
+        """Discretisations with one more mode of a strain, for modes in the correction of the answer."""
         trials: list[Chosen] = []
         present = self.solution.model.discretisation
         most_added = next((most for excess, most in MOST_ADDED if self.error > excess * self.bound), 1)
@@ -420,7 +420,7 @@ class _Lack:
         return trials
 
     def _left_by(self, chosen: Chosen) -> FloatArray:
-        """The missing coordinates, which a discretisation has set to zero, shape (missing,)."""
+        """The missing coordinates, with zeros for modes of a discretisation, shape (missing,)."""
         richer = self.solution.model.discrete.richer
         has = np.zeros(richer.discrete.size, dtype=bool)
         for name, rod in richer.discrete.rods.items():
@@ -440,11 +440,11 @@ class _Lack:
         return inverse_jacobian(self.solution)
 
     def _finer(self, own: Discretisation, by_grid: float) -> Discretisation:
-        """A rod's discretisation with so many intervals that the change by the grid is within its share."""
+        """A rod's discretisation with enough intervals for the change by the grid to be within its share."""
         growth = (by_grid / (GRID_SHARE * self.bound)) ** (1 / POWERS[own.transport])
         if growth > MOST_GROWTH and own.transport in NEXT_ORDER:
             return replace(own, nodes=own.nodes + 1, transport=NEXT_ORDER[own.transport])
         growth = min(growth, MOST_GROWTH)
-        # What sums of layers leave is part of the change by the grid.
+        # The error of sums of layers is part of the change by the grid.
         sections = ceil(own.sections * growth)
         return replace(own, nodes=max(ceil(own.nodes * growth), own.nodes + 1), sections=sections)

@@ -1,6 +1,6 @@
-"""Scenes with obstacles to their tolerance: poses, forces of contact and where it begins and ends.
+"""Scenes in exact contact to their tolerance: poses, forces of contact and places of contact.
 
-The contacts are found on one level of modes and solved again on finer ones, until two levels differ by less than the
+The contacts are found on one level of modes and solved again on finer levels, until two levels differ by less than the
 tolerance. The coarser of the two is the solution, and their distance its estimate.
 """
 
@@ -26,7 +26,7 @@ FINER_MODES = 3
 """Modes that are added to the user's to estimate their error."""
 
 MOST_FAILURES = 1
-"""Levels without an equilibrium after which the next one ends the search: the cushions are the same on all."""
+"""Number of levels without an equilibrium that end the search: the cushions are equal on all levels."""
 
 
 def solve_contact_scene(solver: SceneSolver, transport: str) -> Solution:
@@ -49,7 +49,7 @@ def solve_contact_scene(solver: SceneSolver, transport: str) -> Solution:
         if solver.report is not None:
             solver.report(f"{modes} modes")
         start = coarse if coarse is not None and coarse.converged else None
-        # Modes that a scene fixes are all that there are.
+        # Fixed modes are the only level.
         unmet = 0.0 if scene.accuracy.fixed else _unmet(start)
         fine = solve_contact(
             scene, Grids(chosen), solver.values, start=start, progress=solver.progress, unmet_before=unmet
@@ -69,7 +69,7 @@ def solve_contact_scene(solver: SceneSolver, transport: str) -> Solution:
             if scene.accuracy.fixed or judged.error_estimate <= tolerance:
                 return replace(judged, iterations=fine.iterations)
             if stays_unmet(equilibrium_in(fine), unmet, tolerance):
-                # Other contacts should be there, and none were found.
+                # Other contacts would have to hold, but none were found.
                 why = why_unsettled(scene, [state_in(fine.model.scene)])
                 unresolved = judged.unresolved()
                 return replace(unresolved, iterations=fine.iterations, message=unresolved.message + why)
@@ -83,12 +83,12 @@ def solve_contact_scene(solver: SceneSolver, transport: str) -> Solution:
 
 
 def _unmet(solution: Solution | None) -> float:
-    """Error that the contacts of an equilibrium leave, as its ``unmet`` has it; infinite without an equilibrium."""
+    """Error of the contacts of an equilibrium, its ``unmet``; infinite without an equilibrium."""
     return inf if solution is None else equilibrium_in(solution).unmet()
 
 
 def _levels(scene: scenes.Scene) -> list[tuple[int | tuple[int, ...], int]]:
-    """Modes, and the least intervals, to solve one after the other."""
+    """Modes and least intervals of the levels, in their order."""
     accuracy = scene.accuracy
     if not accuracy.fixed:
         needed = max(wave_modes(scene, rod.name) for rod in scene.rods)

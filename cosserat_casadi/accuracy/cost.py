@@ -1,10 +1,10 @@
-"""Time of residual and Jacobian of a rod, foreseen without building them.
+"""Predicted time of residual and Jacobian of a rod, without building them.
 
 Counting the operations of a model takes longer than solving it, compiling it far longer. The laws of operations follow
-the products that the Jacobian is made of (rod/tangent.py). Length and time of the C, whose columns are computed four at
-a time (codegen/columns.py), are affine in few terms: intervals, products with constant matrices in a column, entries of
-the Jacobian. The code of columns is there once and runs for each group of four. benchmarks/compiled_cost.py fits the
-factors to compiled rods of every strain model, section and load, and tells how far they are off. Factors of loops are
+the products in the Jacobian (rod/tangent.py). Length and time of the C, whose columns are computed four at a time
+(codegen/columns.py), are affine in few terms: intervals, products with constant matrices in a column, entries of the
+Jacobian. The code of columns is written once and runs for each group of four. benchmarks/compiled_cost.py fits the
+factors to compiled rods of every strain model, section and load, and prints their errors. Factors of loops are
 fitted to the rods of benchmarks/code_limit.py, which prints their foreseen times.
 """
 
@@ -19,36 +19,36 @@ from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.properties import RodProperties
 
 STRAIGHT = 3_000
-"""Instructions up to which a kernel is straight-line code: longer ones are about as quick in loops, and shorter.
+"""Most instructions of a kernel in straight-line code: longer kernels are as fast in loops, and shorter code.
 
 Functions of one interval are called: each call is one instruction.
 """
 
 STRAIGHT_BESIDE_INTERVALS = 9_000
-"""Instructions up to which a function of one rod is straight-line code beside its intervals.
+"""Most instructions of a function of one rod, intervals excluded, in straight-line code.
 
-Four intervals are computed together. Loops take half as long again there, or twice: they gather what the intervals take
-and give.
+Four intervals are computed together. Loops take 1.5 to 2 times as long there: they gather arguments and results of the
+intervals.
 """
 
 STRAIGHT_IN_SHARES = 25_000
 """Instructions up to which a function of each rod of an assembly is straight-line code, shared by rods that are alike.
 
-Six legs in loops take half as long again, and their C is longer (docs/theory.md).
+Six legs in loops take 1.5 times as long, and their C is longer (docs/theory.md).
 """
 
 MOST_IN_COLUMNS = 50_000
 """Statements up to which a Jacobian is written by columns, four at a time; a longer one is written in loops.
 
-Loops take up to a third longer there (benchmarks/code_limit.py), compilers some 20 s with what stands beside
-on a loaded machine.
+Loops take up to a third longer there (benchmarks/code_limit.py); compilers take some 20 s for such code on a loaded
+machine.
 """
 
 TOGETHER = 4
-"""Columns that are computed together: LANES of compiling/listing.py, which a solve does not load."""
+"""Number of columns that are computed together: LANES of compiling/listing.py, which a solve does not load."""
 
 PLANAR = "planar"
-"""Stands for the method of a rod that turns about one axis, where all methods are one."""
+"""Name of the method for a rod that turns about one axis, for which all methods are equal."""
 
 _LAWS = {
     "magnus4": (433.0, 84.0, 1.3),
@@ -59,7 +59,7 @@ _LAWS = {
 """Operations of the functions of an interval, and factors of the turning coordinates and of their square, by method."""
 
 _TAYLOR_COUNT = {PLANAR: 1, "magnus4": 2, "magnus6": 3, "magnus8": 4}
-"""Numbers that an interval takes of the strain about each axis."""
+"""Count of numbers of the strain about each axis in an interval, by method."""
 
 
 @dataclass(frozen=True)
@@ -67,12 +67,12 @@ class AffineLaw:
     """A law of C with columns in fours: factors of :class:`Terms`.
 
     Attributes:
-        constant: whatever the rod.
-        of_intervals: of the intervals, by method.
-        in_columns: of the intervals in each group of columns.
-        turns: of products with the matrix of turns in each group of columns.
-        integrals: of products with the matrix of integration in each group of columns.
-        entries: of the entries of the Jacobian.
+        constant: constant term.
+        of_intervals: factor of the intervals, by method.
+        in_columns: factor of the intervals in each group of columns.
+        turns: factor of products with the matrix of turns in each group of columns.
+        integrals: factor of products with the matrix of integration in each group of columns.
+        entries: factor of the entries of the Jacobian.
     """
 
     constant: float
@@ -106,17 +106,17 @@ TIME_IN_COLUMNS = AffineLaw(
 LOOP_TIMES = {"intervals": 0.157, "structure": 0.167e-3, "loads": 0.0538e-3}
 """µs of residual and Jacobian in loops, of rods near the limit (benchmarks/code_limit.py).
 
-Of each interval for each axis that it turns about, each operation for sums and products, each for loads along a rod.
+The factors are for each interval and turning axis, each operation of sums and products, and each of loads along a rod.
 """
 
 
 @dataclass(frozen=True)
 class Spread:
-    """Loads spread along a rod that make its Jacobian costlier; dead forces do not.
+    """Kinds of loads along a rod that make its Jacobian costlier; dead forces do not.
 
     Attributes:
-        follower: a force per length turns with the sections.
-        couple: there is a moment per length.
+        follower: whether a force per length turns with the sections.
+        couple: whether there is a moment per length.
     """
 
     follower: bool = False
@@ -125,11 +125,11 @@ class Spread:
 
 @dataclass(frozen=True)
 class Operations:
-    """Scalar operations of residual and Jacobian, by the quantity that they grow with.
+    """Scalar operations of residual and Jacobian, by their cause.
 
     Attributes:
         intervals: functions of the intervals.
-        structure: sums and products of any rod.
+        structure: sums and products of every rod.
         follower: a force per length that turns with the sections.
         couple: a moment per length.
     """
@@ -150,13 +150,13 @@ class Terms:
     """Terms in which the laws of C with columns in fours are affine.
 
     Attributes:
-        method: of the rotations, or :data:`PLANAR`.
-        groups: groups of four columns.
-        intervals: intervals, each as often as it has axes to turn about.
+        method: rotation integrator, or :data:`PLANAR`.
+        groups: number of groups of four columns.
+        intervals: number of intervals times turning axes.
         turns: products of one column with the constant matrix of turns.
-        integrals: products of one column with the constant matrix of integration, for forces per length that follow.
+        integrals: products of one column with the constant matrix of integration, for follower forces per length.
         entries: entries of the Jacobian.
-        operations: of the Jacobian, among them those for loads along the rod.
+        operations: operations of the Jacobian, loads along the rod included.
     """
 
     method: str
@@ -189,8 +189,8 @@ def foreseen_operations(
     """Scalar operations of one rod's residual and Jacobian, approximately.
 
     Args:
-        rod: what the rod is made of.
-        chosen: a candidate; its transport is one of the Magnus methods.
+        rod: properties of the rod.
+        chosen: a candidate discretisation with one of the Magnus methods as transport.
         spread: loads along the rod.
     """
     method = _method(rod, chosen)
@@ -202,7 +202,7 @@ def foreseen_operations(
     once = _share_beyond(chosen)
     structure = linear * once * turning + square * (once * turning) ** 2
     structure += 32 * once * stretching + 0.6 * once**2 * turning * stretching
-    # Loads without a potential take the other triangle of the Jacobian as well.
+    # Loads without a potential need both triangles of the Jacobian.
     triangle = intervals * square * (once * turning) ** 2
     follower = 0.0
     if spread.follower:
@@ -226,8 +226,8 @@ def terms_of(rod: RodProperties, chosen: Discretisation, spread: Spread = Spread
     """Terms of one rod in which the laws of C with columns in fours are affine.
 
     Args:
-        rod: what the rod is made of.
-        chosen: a candidate; its transport is one of the Magnus methods.
+        rod: properties of the rod.
+        chosen: a candidate discretisation with one of the Magnus methods as transport.
         spread: loads along the rod.
     """
     method = _method(rod, chosen)
@@ -244,7 +244,7 @@ def terms_of(rod: RodProperties, chosen: Discretisation, spread: Spread = Spread
 
 
 def foreseen_statements(terms: Terms) -> float:
-    """Statements of the Jacobian by columns in C, approximately: what :data:`MOST_IN_COLUMNS` is a bound of."""
+    """Statements of the Jacobian by columns in C, approximately; :data:`MOST_IN_COLUMNS` bounds this number."""
     return _affine(STATEMENTS, terms, groups=1)
 
 
@@ -269,8 +269,8 @@ def foreseen_time(
     """Time of one rod's residual and Jacobian compiled with ``gcc -O2``, µs on the machine that the law was fitted on.
 
     Args:
-        rod: what the rod is made of.
-        chosen: a candidate; its transport is one of the Magnus methods.
+        rod: properties of the rod.
+        chosen: a candidate discretisation with one of the Magnus methods as transport.
         spread: loads along the rod.
     """
     terms = terms_of(rod, chosen, spread)
@@ -280,7 +280,7 @@ def foreseen_time(
 
 
 def _affine(law: AffineLaw, terms: Terms, groups: int) -> float:
-    """Value of a law for code whose columns run for so many groups."""
+    """Value of a law for code that runs for ``groups`` groups of columns."""
     once = law.of_intervals[terms.method] * terms.intervals + law.entries * terms.entries
     of_group = law.in_columns * terms.intervals + law.turns * terms.turns + law.integrals * terms.integrals
     return law.constant + once + groups * of_group
@@ -304,12 +304,12 @@ def _coordinates(rod: RodProperties, chosen: Discretisation) -> tuple[float, flo
 
 
 def _share_beyond(chosen: Discretisation) -> float:
-    """Share of all pairs of elements of which the second is not before the first: a coordinate moves no others."""
+    """Share of pairs of elements with the second not before the first: a coordinate moves only these."""
     return (chosen.elements + 1) / (2 * chosen.elements)
 
 
 def _integrals(rod: RodProperties, chosen: Discretisation) -> float:
-    """Products of forces on the nodes, of those components that a rod's turning changes, with the matrix S."""
+    """Number of products with the matrix S, of the components of forces on the nodes that a turn of the rod changes."""
     nodes = chosen.elements * (chosen.nodes + 1)
     components = 2 if len(rod.turning_axes) < 2 else 3
     return components * _share_beyond(chosen) * nodes**2

@@ -1,4 +1,4 @@
-"""Discretisations joined, and scenes with modes and nodes fixed or to be chosen."""
+"""Unions of discretisations, and scenes with fixed or open modes and nodes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Chosen = Mapping[str, Discretisation]
 
 
 def union(several: Iterable[Chosen]) -> dict[str, Discretisation]:
-    """The least discretisation of every rod with all the modes and intervals of several."""
+    """The least discretisation of every rod that contains the modes and intervals of several discretisations."""
     first, *others = several
     joined = dict(first)
     for other in others:
@@ -25,7 +25,7 @@ def union(several: Iterable[Chosen]) -> dict[str, Discretisation]:
 
 
 def union_of(chosen: Sequence[Discretisation]) -> Discretisation:
-    """The least discretisation with all the modes and nodes of these; one number of modes where rods differ."""
+    """The least discretisation that contains the modes and nodes of all; one number of modes if rods differ."""
     counts = {len(d.modes) for d in chosen}
     if len(counts) == 1:
         by_component = zip(*[d.modes for d in chosen], strict=True)
@@ -40,7 +40,7 @@ def union_of(chosen: Sequence[Discretisation]) -> Discretisation:
 
 
 def unfixed(scene: scenes.Scene, tolerance: float) -> scenes.Scene:
-    """The scene with its discretisation to be chosen for a tolerance."""
+    """The scene with an open discretisation and a tolerance."""
     return with_accuracy(
         scene,
         tolerance=tolerance,
@@ -71,7 +71,7 @@ def fixed_alike(scene: scenes.Scene, chosen: Discretisation) -> scenes.Scene:
 
 
 def with_accuracy(scene: scenes.Scene, **changes: object) -> scenes.Scene:
-    """The scene read again with other entries of its accuracy; None leaves one out."""
+    """The scene with other entries of its accuracy, read again; None removes an entry."""
     tables = scene_tables(scene)
     entries = tables.get("accuracy", {})
     entries = {**entries, **changes}
@@ -81,7 +81,7 @@ def with_accuracy(scene: scenes.Scene, **changes: object) -> scenes.Scene:
 
 
 def on_elements_of(scene: scenes.Scene, chosen: Chosen) -> dict[str, Discretisation]:
-    """A discretisation with the elements of a scene, which end where its loads act."""
+    """A discretisation with the element ends of a scene."""
     own = discretise(scene, 1, 2)
     return {name: replace(chosen[name], breaks=elements.breaks) for name, elements in own.items()}
 

@@ -22,43 +22,43 @@ REFERENCE_MODES = (3, 5, 7, 9, 12, 15, 19, 24, 30, 38, 48, 64, 80, 100, 128)
 """Modes per strain component and element of a reference solution, level by level."""
 
 USUAL_MODES = 64
-"""Modes of the finest level of a scene whose signals do not ask for more, and that may not converge on it."""
+"""Modes of the finest level for a scene whose signals do not ask for more, even if it does not converge there."""
 
 SIGNAL_FACTOR = 2
-"""Factor on the modes that the signals of a scene ask for, up to which levels are tried."""
+"""Factor on the modes for the signals of a scene up to which levels are tried."""
 
 FIRST_LEVELS = ((1e-4, 1), (0.0, 2))
-"""First level for tolerances down to a bound; lower levels cannot tell how fast solutions converge."""
+"""First level for tolerances down to a bound; lower levels cannot show the rate of convergence."""
 
 MOST_LEVELS = 3
-"""Most levels up at once where the missing modes are extrapolated: convergence may turn out faster."""
+"""Most levels in one step with extrapolated modes: convergence may be faster than extrapolated."""
 
 GRID_FACTOR = 1.4
 """Factor on the intervals after a grid was too coarse."""
 
 MOST_GRID_FACTOR = 4.0
-"""Product of the factors on the intervals at which the grid is given up."""
+"""Product of the factors on the intervals above which the grid is given up."""
 
 VERIFIED_MODES = (6, 9, 12, 16, 21, 28, 36, 48)
-"""Modes per strain component and element where a level is verified by the next one."""
+"""Modes per strain component and element of levels that the next level verifies."""
 
 VERIFIED_WAVES = (48, 64, 85, 113, 150)
-"""Further modes where a level is verified, for scenes that put waves along their rods."""
+"""Further modes of such levels, for scenes with waves along their rods."""
 
 SHORT = 0.25
-"""Length of an element over its rod's, up to which it is short: it sees less of the rod, and needs fewer modes."""
+"""Length of an element over its rod's, below which it is short: it covers less of the rod, and needs fewer modes."""
 
 SPARE_NODES = 2
-"""Intervals of a verified level beyond the number that the modes and the turn of a rod need."""
+"""Intervals of a verified level beyond the number for the modes and the turn of a rod."""
 
 
 def nodes_for_turn(modes: int, turn: float) -> int:
-    """Chebyshev intervals that resolve a rod with so many modes.
+    """Chebyshev intervals that resolve a rod with a number of modes and a turn.
 
     Args:
         modes: per strain component and element.
-        turn: angle through which an element turns, rad. An interval more for every 2 rad, since the Magnus series and
-            the interpolation need a bounded turn of each (docs/theory.md, section 10).
+        turn: angle through which an element turns, rad. It needs one more interval for every 2 rad, since the Magnus
+            series and the interpolation need a bounded turn of each (docs/theory.md, section 10).
     """
     return nodes_for(modes) + ceil(turn / 2)
 
@@ -69,12 +69,12 @@ def layer_nodes(scene: scenes.Scene) -> int:
 
 
 def layer_sections(scene: scenes.Scene, tolerance: float) -> int:
-    """Sections per element at which layers that do not rub should be summed to a tolerance; 0 without any."""
+    """Sections per element for the sums of frictionless layers to a tolerance; 0 without any."""
     return max((seeing_sections(*met, tolerance) for met in _layers(scene)), default=0)
 
 
 def _layers(scene: scenes.Scene) -> Iterator[tuple[scenes.ObstacleRecord, RodProperties, float]]:
-    """Each smooth obstacle with each rod that it presses, and the length of the longest element of the rod, m."""
+    """Smooth obstacles with the rods that they press, and the length of the longest element of each rod, m."""
     for record in scene.rods:
         for obstacle in scene.obstacles:
             if obstacle.is_smooth and obstacle.concerns(record.name):
@@ -88,11 +88,11 @@ def is_thin(scene: scenes.Scene) -> bool:
 
 
 def verified_modes(scene: scenes.Scene, of_short: tuple[int, ...]) -> tuple[int, ...]:
-    """Modes of levels that are verified by the next one, as :func:`seeing_modes` has them.
+    """Modes of levels that the next level verifies; see :func:`seeing_modes`.
 
     Args:
         scene: the scene.
-        of_short: modes of further levels below the usual ones, where every rod is cut into short elements.
+        of_short: modes of further, lower levels for scenes in which every rod is cut into short elements.
     """
     widths = np.concatenate([np.diff(element_ends(scene, rod.name)) for rod in scene.rods])
     all_are_short = widths.max() <= SHORT + NARROWEST
@@ -100,7 +100,7 @@ def verified_modes(scene: scenes.Scene, of_short: tuple[int, ...]) -> tuple[int,
 
 
 def seeing_modes(scene: scenes.Scene, usual: tuple[int, ...]) -> tuple[int, ...]:
-    """Modes of levels that are verified by the next one, two at least: none is blind to loads along the rods.
+    """Modes of two levels at least that the next level verifies; all resolve the loads along the rods.
 
     Args:
         scene: the scene.
@@ -115,30 +115,30 @@ def seeing_modes(scene: scenes.Scene, usual: tuple[int, ...]) -> tuple[int, ...]
 
 
 def verified_model(scene: scenes.Scene, modes: int, turn: float) -> Model:
-    """The model of a level that is verified by the next one.
+    """The model of a level that the next level verifies.
 
     Args:
         scene: the scene.
         modes: per strain component and element, one of :func:`verified_modes`.
-        turn: largest angle through which an element turned on the level before, rad; 0 on the first.
+        turn: largest turn of an element on the level before, rad; 0 on the first level.
     """
     nodes = nodes_for_turn(modes, turn) + SPARE_NODES
-    # Two levels should differ by their modes: the highest order keeps the grid's error out of the comparison.
+    # Levels should differ by their modes alone: the highest order keeps the grid's error out of the comparison.
     discretisation = discretise(scene, modes, nodes, "magnus8")
     return build(scene, discretisation)
 
 
 @dataclass(frozen=True)
 class Level:
-    """A level on the way to a reference solution, with the error of the grid known by then.
+    """A refinement level in the search for a reference solution, with the state of its grid.
 
     Attributes:
-        index: into REFERENCE_MODES.
+        index: index in REFERENCE_MODES.
         grid_factor: factor on the intervals.
-        min_nodes: intervals below which a grid was too coarse for so bent a rod.
+        min_nodes: intervals below which a grid was too coarse for the bent rod.
         layer_nodes: intervals that thin smooth obstacles ask for, before the factor.
         sections: sections per element at which layers are summed; 0 for as many as the intervals ask for.
-        finest: index of the last level that is tried whether or not the rods converge; those above, where they do.
+        finest: index of the last level that is tried in any case; higher levels are tried if the rods converge.
     """
 
     index: int
@@ -150,14 +150,14 @@ class Level:
 
     @classmethod
     def first(cls, tolerance: float, signal_modes: int = 0, layer_nodes: int = 0, sections: int = 0) -> Level:
-        """The level that a scene begins with.
+        """The first level of a scene.
 
         Args:
             tolerance: wanted error.
-            signal_modes: modes below which a level is blind to what the scene puts along its rods; the last level
-                where none has so many.
+            signal_modes: least modes that resolve the waves in the scene's data; the last level is taken if none has as
+                many.
             layer_nodes: intervals that thin smooth obstacles ask for.
-            sections: per element, at which layers are summed.
+            sections: number of sections per element at which layers are summed.
         """
         suitable = (index for bound, index in FIRST_LEVELS if tolerance >= bound)
         visible = _lowest_with(signal_modes)
@@ -170,30 +170,31 @@ class Level:
         return REFERENCE_MODES[self.index]
 
     def nodes(self, turn: float) -> int:
-        """Intervals per element, for rods whose elements turn by an angle in rad."""
+        """Intervals per element for a turn of the elements, rad."""
         nodes = max(nodes_for_turn(self.modes, turn), self.layer_nodes)
         stretched = ceil(self.grid_factor * nodes)
         return max(stretched, self.min_nodes)
 
     def with_modes(self, modes: int) -> Level | None:
-        """The lowest level above that has so many modes, and the same grid factor; None where no level has so many."""
+        """The lowest higher level with at least these modes and this grid factor; None if no level has as many."""
         if modes > REFERENCE_MODES[self.finest]:
             return None
-        # Always one up: a level that was just found too coarse is not solved again.
+        # At least one level higher: a level that is too coarse is not solved again.
         index = max(_lowest_with(modes), self.index + 1)
         if index > self.finest:
             return None
         return replace(self, index=index)
 
     def with_extrapolated_modes(self, modes: int) -> Level | None:
-        """A level above on the way to a number of modes that may be too large; None where none is worth a try.
+        """A higher level towards a number of modes that may be too large; None if none is worth a try.
 
-        Up to the finest level any number is. Above, only one that some level has: rods are sharply bent, but converge.
+        Up to the finest level every number is. Above, only a number that some level has: rods that bend sharply, but
+        converge.
         """
         if self.index >= self.finest:
             if modes > REFERENCE_MODES[-1] or self.index + 1 == len(REFERENCE_MODES):
                 return None
-            # One up at a time: these cost most, and rounding grows with their modes.
+            # One level at a time: these levels cost most, and rounding grows with their modes.
             return replace(self, index=self.index + 1)
         tried = min(modes, REFERENCE_MODES[self.finest])
         above = self.with_modes(tried)
@@ -202,10 +203,10 @@ class Level:
         return replace(above, index=min(above.index, self.index + MOST_LEVELS))
 
     def with_finer_sums(self, factor: float) -> Level | None:
-        """This level with layers summed at so many times as many sections, at intervals where these alone are summed.
+        """This level with the sections of layers times a factor, or the intervals if layers are summed at nodes.
 
         Returns:
-            None where sums, or the grid, are given up.
+            None if sums, or the grid, are given up.
         """
         if not self.sections:
             return self.with_finer_grid()
@@ -214,14 +215,14 @@ class Level:
         return replace(self, sections=min(ceil(factor * self.sections), MOST_SECTIONS))
 
     def with_finer_grid(self) -> Level | None:
-        """This level on more intervals; None where the grid is given up."""
+        """This level on more intervals; None if the grid is given up."""
         if self.grid_factor >= MOST_GRID_FACTOR:
             return None
         return replace(self, grid_factor=self.grid_factor * GRID_FACTOR)
 
 
 def _lowest_with(modes: int) -> int:
-    """Index of the lowest level with so many modes; of the last one where none has."""
+    """Index of the lowest level with at least these modes; the last index if there is none."""
     last = len(REFERENCE_MODES) - 1
     sufficient = (i for i in range(last) if REFERENCE_MODES[i] >= modes)
     return next(sufficient, last)

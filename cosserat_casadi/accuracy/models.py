@@ -1,4 +1,4 @@
-"""The model of a scene of whatever kind."""
+"""The model of a scene, of rods or of concentric tubes."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ def build(
 
     Args:
         scene: a validated scene.
-        discretisation: of rods one for every rod; by default what the scene fixes, else a moderate one. Of concentric
-            tubes the number of steps of a piece. Use :func:`cosserat_casadi.solve` to have it chosen for a tolerance.
-        moving: whether it is for a motion, in which bodies may turn freely.
+        discretisation: for rods, one for every rod; by default the scene's, or else a moderate one. For concentric
+            tubes, the number of steps of a piece. :func:`cosserat_casadi.solve` chooses it for a tolerance.
+        moving: whether the model is for a motion, in which bodies may turn freely.
 
     Raises:
         SceneError: joints over-constrain; or, at rest, leave a body free to turn; a load or an obstacle cannot be
@@ -42,7 +42,7 @@ def build(
     """
     if not isinstance(discretisation, int):
         return model_build.build(scene, discretisation, moving=moving)
-    # Imported here, because no scene of rods needs the modules of tubes.
+    # Imported here, since scenes of rods do not need the modules of tubes.
     from cosserat_casadi.tubes.robot import parametric_robot
     from cosserat_casadi.tubes.tube_solve import model_of
 

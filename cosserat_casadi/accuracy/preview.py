@@ -1,12 +1,12 @@
-"""Poses that a coarser discretisation would give, from a converged finer one and without building a model.
+"""Preview of the poses on a coarser discretisation, from a converged finer solution and without building a model.
 
-A fine solution, the reference, knows the equilibrium, its Jacobian, and by the order of its polynomials every coarser
-set of modes: dropping a mode is dropping a row and a column. So the equilibrium with fewer modes is a few corrections
-in a subspace, and that on another grid is one correction with the residual of that grid. Both are solutions to within
-the square of the neglected terms, so the superconvergence of the tip is in them: an error estimated from the tail of
-the strain alone would be far too large.
+A fine solution, the reference, has the equilibrium, its Jacobian, and, by the order of its polynomials, every coarser
+set of modes: dropping a mode is dropping a row and a column. So the equilibrium with fewer modes takes a few
+corrections in a subspace, and the equilibrium on another grid one correction with the residual of that grid. Both are
+exact to the square of the neglected terms, and so include the superconvergence of the tip: an error estimated from the
+tail of the strain would be far too large.
 
-Poses and cables that a tolerance binds are compared: model/watched.py.
+Watched poses and cables are compared: model/watched.py.
 """
 
 from __future__ import annotations
@@ -36,22 +36,23 @@ Modes = Mapping[str, tuple[int, ...]]
 """Modes of every admitted strain and element, for each rod."""
 
 LEAST_COMPLIANCE = 0.1
-"""Share of the motion with all modes that inputs must cause with fewer: closed loops of few modes lock."""
+"""Least share, by fewer modes, of the motion by inputs with all modes: closed loops with few modes lock."""
 
 AMPLE_FREEDOM = 24
-"""Coordinates for each body that constraints leave free and with which nothing locks: four for each of its motions."""
+"""Free coordinates for each body with which nothing locks: four for each of its motions."""
 
 CORRECTIONS = 2
-"""Corrections with the reference's Jacobian after dropping modes; each reduces the error by about the tail dropped."""
+"""Corrections with the reference's Jacobian after dropping modes; each multiplies the error by about the dropped
+tail."""
 
 
 @dataclass(frozen=True)
 class FinerShift:
-    """Changes by modes that a reference lacks, as in :mod:`cosserat_casadi.maths.pose_change`.
+    """Changes by the missing modes of a reference; see :mod:`cosserat_casadi.maths.pose_change`.
 
     Attributes:
-        tips: motions of the watched poses and cables, shape (2k + c, 3).
-        shapes: of sections all along the rods, those between the nodes of the reference included, shape (2s, 3).
+        tips: changes of the watched poses and cables, shape (2k + c, 3).
+        shapes: changes of sections all along the rods, between the nodes of the reference too, shape (2s, 3).
     """
 
     tips: FloatArray
@@ -60,7 +61,7 @@ class FinerShift:
 
 @dataclass(frozen=True)
 class Preview:
-    """A reference solution that foresees what coarser discretisations would give."""
+    """A reference solution with previews of coarser discretisations."""
 
     reference: Solution
     _shifts: dict[tuple[tuple[str, tuple[int, ...]], ...], FloatArray] = field(default_factory=dict, repr=False)
@@ -78,7 +79,7 @@ class Preview:
 
     @cached_property
     def _regular_jacobian(self) -> FloatArray:
-        """The Jacobian with a stiffness against what symmetry leaves neutral, so that no correction moves along it."""
+        """The Jacobian with a stiffness against variations that symmetry makes neutral, so that these stay zero."""
         return regular(self.jacobian)
 
     @cached_property
@@ -88,11 +89,11 @@ class Preview:
 
     @property
     def no_shift(self) -> FloatArray:
-        """The change of the watched numbers where nothing moves."""
+        """The zero change of the watched numbers."""
         return self.tips.change_from(self.tips)
 
     def kept(self, modes: Modes) -> Mask:
-        """Unknowns of the reference that exist with these modes, shape (n,); multipliers always do."""
+        """Whether each unknown of the reference exists with these modes, shape (n,); multipliers always do."""
         discrete = self.model.discrete
         mask = np.ones(self.model.size, dtype=bool)
         for name, discrete_rod in discrete.rods.items():
@@ -116,7 +117,7 @@ class Preview:
         kept = self.kept(modes)
         inverse = self._inverse_of_kept(kept)
         x = np.where(kept, self.reference.x, 0.0)
-        # To first order the kept unknowns take over the residual that the dropped ones leave: J_kk δx_k = J_kd x_d.
+        # To first order the kept unknowns balance the residual that the dropped ones leave: J_kk δx_k = J_kd x_d.
         coupling = self.jacobian[np.ix_(kept, ~kept)]
         dropped = self.reference.x[~kept]
         x[kept] += inverse @ (coupling @ dropped)
@@ -126,12 +127,12 @@ class Preview:
         return x
 
     def mode_shift(self, modes: Modes) -> FloatArray:
-        """Change of the watched numbers by having fewer modes, shape (2k + c, 3); infinite where these cannot move."""
+        """Change of the watched numbers by fewer modes, shape (2k + c, 3); infinite if these lock."""
         key = tuple(modes.items())
         if key not in self._shifts and self._locks(self.kept(modes)):
             self._shifts[key] = np.full_like(self.no_shift, np.inf)
         if key not in self._shifts:
-            # Held rods of too few modes may have no equilibrium near: whatever comes out then is beyond all bounds.
+            # Held rods with too few modes may have no equilibrium nearby: such a result is above all bounds.
             with np.errstate(all="ignore"):
                 x = self.with_modes(modes)
                 shift = watched_at(self.reference, x).change_from(self.tips)
@@ -145,15 +146,15 @@ class Preview:
         Args:
             x: equilibrium with the given modes on the reference's grid, from :meth:`with_modes`.
             modes: modes of every rod.
-            grids: nodes and transport of every rod; their modes are not read.
+            grids: nodes and transport of every rod; their modes are ignored.
         """
         regridded = self._regridded(x, grids)
-        # The unknowns move by far less than the tips can tell apart on two grids: the reference's grid serves.
+        # The unknowns change so little that the tips may be evaluated on the reference's grid.
         by_grid = _tips_of(regridded).change_from(watched_at(self.reference, x))
         return by_grid + self._shift_by_unknowns(x, self.kept(modes), regridded)
 
     def sums_shift(self) -> FloatArray:
-        """Change of the watched numbers by sums of layers at the finer sections that show their error."""
+        """Change of the watched numbers by sums of layers at finer sections, which show the error of the sums."""
         discrete = self.model.discrete
         if not discrete.finer_sections:
             return self.no_shift
@@ -162,9 +163,9 @@ class Preview:
         return self._shift_by_unknowns(x, np.ones(len(x), dtype=bool), finer)
 
     def _shift_by_unknowns(self, x: FloatArray, kept: Mask, system: System) -> FloatArray:
-        """Change of the watched numbers by one Newton step from x with the equations of a system beside the reference.
+        """Change of the watched numbers by one Newton step from x with the equations of another system.
 
-        The Jacobian is the reference's.
+        The step uses the Jacobian of the reference.
         """
         residual = _numbers(SceneEquations(system).residual)[kept, 0]
         corrected = x.copy()
@@ -172,16 +173,16 @@ class Preview:
         return watched_at(self.reference, corrected).change_from(watched_at(self.reference, x))
 
     def finer_shift(self, grids: Mapping[str, Discretisation], sweeps: int) -> FinerShift:
-        """Changes by modes that the reference lacks, on a grid that resolves them.
+        """Changes by missing modes of the reference, on a grid that resolves them.
 
-        Stiffness alone holds the short waves of the added modes, so that each gives way by what the balance lacks in
-        it; the reference's Jacobian tells how all others follow. A few sweeps of both are Newton's corrections with
-        the model of all these modes, but no such model is built.
+        The stiffness dominates the short waves of the added modes, so that its inverse times their residual is their
+        step; the reference's Jacobian tells how all others follow. A few sweeps of both converge to Newton's correction
+        with the model of all these modes, which is not built.
 
         Args:
             grids: modes, nodes and transport of every rod; modes no fewer than the reference's.
-            sweeps: number of times that added modes give way and all others follow; with 0 they give way and no other
-                follows, which tells shapes but not tips.
+            sweeps: number of steps of the added modes with all others following; with 0 the added modes make one step
+                and no other follows, which tells shapes but not tips.
         """
         model = self.model
         richer = Richer(model.discrete, discrete_scene(model.scene, model.inputs, dict(grids)))
@@ -193,7 +194,7 @@ class Preview:
         known: FloatArray = self.reference.x
         missing: FloatArray = np.zeros(richer.missing_size)
         current = system(known, missing)
-        # Of the tips the modes alone: what the grid does to them is a look of its own.
+        # Tips change by the modes alone: their change by the grid is estimated separately.
         tips = _tips_of(current)
         for _ in range(max(sweeps, 1)):
             _, lacking = richer.split(_as_numbers(SceneEquations(current).residual))
@@ -210,7 +211,7 @@ class Preview:
         )
 
     def _locks(self, kept: Mask) -> bool:
-        """Whether constraints leave so little freedom to these unknowns that some input hardly moves anything."""
+        """Whether constraints leave these unknowns so little freedom that some input hardly moves anything."""
         if self._has_ample_freedom(kept):
             return False
         steps = np.zeros_like(self._pushes)
@@ -218,7 +219,7 @@ class Preview:
         return bool(np.any(self._motions(steps) < LEAST_COMPLIANCE * self._whole_motions))
 
     def _has_ample_freedom(self, kept: Mask) -> bool:
-        """Whether so many coordinates are free that nothing can lock; so where nothing is constrained."""
+        """Whether so many coordinates are free that nothing can lock; true without constraints."""
         freedom = degrees_of_freedom(self.model)
         if freedom is None:
             return True
@@ -232,11 +233,11 @@ class Preview:
 
     @cached_property
     def _whole_motions(self) -> FloatArray:
-        """Motions that the pushes cause with all unknowns, shape (inputs,)."""
+        """Motions by the inputs with all unknowns, shape (inputs,)."""
         return self._motions(-_inverse(self._regular_jacobian) @ self._pushes)
 
     def _motions(self, steps: FloatArray) -> FloatArray:
-        """Motions of the watched poses and cables by steps of the unknowns, shape (n, k), one a column."""
+        """Motions of the watched poses and cables by steps of the unknowns, shape (n, k), one in each column."""
         return np.array([motion(self.model, self.reference.x, self.reference.inputs, step) for step in steps.T])
 
     def _inverse_of_kept(self, kept: Mask) -> FloatArray:
@@ -251,13 +252,13 @@ class Preview:
         return self._system(discrete_scene(self.model.scene, self.model.inputs, discretisation), x)
 
     def _system(self, discrete: DiscreteScene, x: FloatArray | Matrix) -> System:
-        """The equations of a scene like the reference's at some unknowns and its inputs."""
-        # Numbers for arguments: CasADi evaluates while it builds, so that no function is compiled for one look.
+        """The equations of a discrete scene at unknowns x and the inputs of the reference."""
+        # With numbers as arguments CasADi evaluates while it builds, so that no function is built for one evaluation.
         return System(discrete, Arguments(ca.DM(x), ca.DM(self.reference.inputs)))
 
     @cached_property
     def _shapes(self) -> WatchedNumbers:
-        """Sections all along the rods of the reference, as its solution tells them."""
+        """Poses of sections all along the rods of the reference."""
         positions = []
         quaternions = []
         for name in self.model.discrete.rods:
@@ -268,7 +269,7 @@ class Preview:
 
 
 def _shapes_of(system: System) -> WatchedNumbers:
-    """Sections all along the rods of a system that has numbers for its arguments."""
+    """Poses of sections all along the rods of a system with numbers as arguments."""
     positions = []
     quaternions = []
     for name in system.discrete.rods:
@@ -279,12 +280,12 @@ def _shapes_of(system: System) -> WatchedNumbers:
 
 
 def _tips_of(system: System) -> WatchedNumbers:
-    """The watched numbers of a system that has numbers for its arguments."""
+    """The watched numbers of a system with numbers as arguments."""
     return WatchedNumbers.of_column(_column(watched(system).column), len(watched_cables(system.discrete)))
 
 
 def _inverse(matrix: FloatArray) -> FloatArray:
-    """The inverse; of a singular matrix the pseudo-inverse."""
+    """The inverse of a matrix, or the pseudo-inverse if it is singular."""
     try:
         inverse = np.linalg.inv(matrix)
     except np.linalg.LinAlgError:
@@ -293,7 +294,7 @@ def _inverse(matrix: FloatArray) -> FloatArray:
 
 
 def _numbers(matrix: Matrix) -> FloatArray:
-    """Values of a matrix without symbols: what supports add is wrapped as an expression."""
+    """Values of a matrix without symbols, whose terms from supports may be constant expressions."""
     return ca.evalf(ca.MX(matrix)).full()
 
 
@@ -303,5 +304,5 @@ def _column(vector: Matrix) -> FloatArray:
 
 
 def _as_numbers(matrix: Matrix) -> ca.DM:
-    """A matrix without symbols: what supports add is wrapped as an expression."""
+    """A matrix without symbols, whose terms from supports may be constant expressions, as numbers."""
     return ca.DM(_numbers(matrix))

@@ -1,15 +1,15 @@
-"""The ranges that a discretisation is chosen for: asked for, of the scene, or a documented scale.
+"""The ranges for which a discretisation is chosen: from the caller, from the scene, or by a documented scale.
 
-Where nobody gives the range of an input, it reaches as far around the scene's value as turns a rod by about a radian
-from end to end, by the linear response of the unloaded scene. So a force F at the tip of a clamped rod is taken up to
-2 EI/ℓ². It reaches as far in every direction, by the softest one: a flat strip that is pushed edgewise as hard as would
-bend it by a radian is twisted out of all proportion. In closed loops 2 EI/ℓ² of the softest rod is taken: a loop is so
-much stiffer than its rods that what turns these by a radian may have no equilibrium beside it. Contact is left out:
-what lies on an obstacle bends less than is taken here.
+The default range of an input about the scene's value turns a rod by about a radian from end to end, by the linear
+response of the unloaded scene. So a force F at the tip of a clamped rod is taken up to 2 EI/ℓ². The range is equal in
+every direction, by the softest one: a flat strip under an edgewise force that would bend it by a radian would be
+twisted extremely. In closed loops 2 EI/ℓ² of the softest rod is taken: a loop is so much stiffer than its rods that a
+load that turns these by a radian may have no equilibrium. Contact is ignored: a rod on an obstacle bends less than
+assumed here.
 
 Tensions and pressures begin at zero. Lengths change by a tenth at most, gravity keeps its size, and bases move by a
-tenth of the longest rod. A base turns into every direction where nothing else holds the rods, else by a fifth of a
-radian about each axis. Parameters keep their values.
+tenth of the longest rod. A base turns in every direction if nothing else holds the rods, else by a fifth of a radian
+about each axis. Parameters keep their values.
 """
 
 from __future__ import annotations
@@ -34,16 +34,16 @@ from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.rod.strain import DiscreteRod
 
 TURN = 1.0
-"""Turn of a rod from end to end that the scale of an input makes, rad."""
+"""Turn of a rod from end to end by the scale of an input, rad."""
 
 STRETCH = 0.1
-"""Share of a length by which it changes at most; share of the longest rod by which a base moves."""
+"""Largest relative change of a length; displacement of a base over the longest rod."""
 
 TILT = 0.1
-"""Change of each entry of a unit quaternion, which is half an angle in rad, where a base may only tilt."""
+"""Change of each entry of the unit quaternion of a base that may only tilt: half an angle in rad."""
 
 GRAVITY = 9.81
-"""Acceleration where the scene's own is zero, m/s²."""
+"""Acceleration for a scene with zero gravity, m/s²."""
 
 RESPONSE_MODES = 4
 """Modes of every strain on which the response of the unloaded scene is computed."""
@@ -56,7 +56,7 @@ MIDDLES = (np.arange(100) + 0.5) / 100
 """Abscissae of sections at which turns are summed up."""
 
 STEP = 1e-3
-"""Share of an input by which it is moved to find its response."""
+"""Relative change of an input for its response."""
 
 
 class Origin(Enum):
@@ -87,7 +87,7 @@ class CaseRanges:
     Attributes:
         layout: inputs and parameters.
         lower: least values, shape (size of a case,).
-        upper: largest values, shape (size of a case,); equal to the least one where an entry keeps its value.
+        upper: largest values, shape (size of a case,), equal to the least value for an entry that keeps its value.
         origins: where each range comes from.
     """
 
@@ -98,11 +98,11 @@ class CaseRanges:
 
     @property
     def moving(self) -> npt.NDArray[np.intp]:
-        """Indices of the entries that do not keep one value."""
+        """Indices of the entries with different ends."""
         return np.flatnonzero(self.lower < self.upper)
 
     def where_still(self, others: CaseRanges) -> CaseRanges:
-        """These ranges, with the range of others where an entry keeps its value."""
+        """These ranges, with the others' range for entries that keep their value."""
         still = self.lower == self.upper
         lower = np.where(still, others.lower, self.lower)
         upper = np.where(still, others.upper, self.upper)
@@ -116,7 +116,7 @@ class CaseRanges:
         return tuple(line for line, _ in self.with_origins())
 
     def with_origins(self) -> Iterator[tuple[str, Origin]]:
-        """``column=low:high`` of every entry that does not keep the scene's value, with where its range comes from."""
+        """``column=low:high`` of every entry that does not keep the scene's value, with the origin of its range."""
         changed = (self.lower < self.upper) | (self.lower != self.layout.default)
         for column, k in self.layout.columns.items():
             if changed[k]:
@@ -124,14 +124,14 @@ class CaseRanges:
 
 
 def input_ranges(scene: scenes.Scene, given: Given | None = None) -> CaseRanges:
-    """The range of every free input and every parameter, and where it comes from.
+    """The range of every free input and every parameter, and its origin.
 
-    Asked for, else of the scene's table of ranges, else what its modes were chosen for, else its bounds, else the scale
-    of the input. In a scene whose modes were chosen for ranges what these do not name keeps its value.
+    It is the given range, else from the scene's table of ranges, else the range its modes were chosen for, else its
+    bounds, else the scale of the input. If modes were chosen for ranges, entries without such a range keep their value.
 
     Args:
         scene: a validated scene.
-        given: pairs of lower and upper end that are asked for.
+        given: given pairs of lower and upper end.
 
     Raises:
         SceneError: with every fault: a range of an unknown input, ends that are equal, reversed or not finite, or a
@@ -156,7 +156,7 @@ def input_ranges(scene: scenes.Scene, given: Given | None = None) -> CaseRanges:
 
 
 def ranges_of_cases(layout: CaseLayout, rows: FloatArray) -> CaseRanges:
-    """Ranges that load cases, shape (count, size of a case), span."""
+    """The ranges spanned by load cases, shape (count, size of a case)."""
     return CaseRanges(layout, rows.min(axis=0), rows.max(axis=0), (Origin.ASKED,) * rows.shape[1])
 
 
@@ -166,8 +166,8 @@ def _entries(layout: CaseLayout, given: Given, origin: Origin, where: str) -> En
     Args:
         layout: inputs and parameters.
         given: pairs by column or by name.
-        origin: of these ranges.
-        where: what gives them, for errors.
+        origin: origin of these ranges.
+        where: their source, for error messages.
 
     Raises:
         SceneError: with every fault.
@@ -189,7 +189,7 @@ def _entries(layout: CaseLayout, given: Given, origin: Origin, where: str) -> En
             counted = "1 pair" if size == 1 else f"1 pair or {size}"
             problems.append(Problem(where, f"{name} must have {counted} of ends, got shape {pairs.shape}"))
             continue
-        # Modes may have been chosen for a single value of an entry; the reader of scenes has judged all else.
+        # Modes may have been chosen for a single value of an entry; the reader of scenes has checked all else.
         if origin is not Origin.CHOSEN_FOR:
             faults = [fault_of_ends(where, name, low, high) for low, high in pairs.tolist()]
             problems.extend(fault for fault in faults if fault is not None)
@@ -200,7 +200,7 @@ def _entries(layout: CaseLayout, given: Given, origin: Origin, where: str) -> En
 
 
 def _bounded(scene: scenes.Scene, layout: CaseLayout) -> Entries:
-    """Ranges of the entries that their physics or the scene bounds on both sides."""
+    """Ranges of entries that physics or the scene bounds on both sides."""
     lower, upper = narrowed(layout.inputs, scene.bounds)
     least, most = physical_range(layout.inputs)
     both = np.flatnonzero(np.isfinite(lower) & np.isfinite(upper) & (lower < upper))
@@ -213,7 +213,7 @@ def _bounded(scene: scenes.Scene, layout: CaseLayout) -> Entries:
 
 
 def _scales(scene: scenes.Scene, layout: CaseLayout, entries: Sequence[int]) -> Entries:
-    """Ranges of entries by their effect on the unloaded scene, within what the scene bounds on one side."""
+    """Ranges of entries by their effect on the unloaded scene, within one-sided bounds of the scene."""
     if not entries:
         return {}
     bare = without_contacts(scene.baked())
@@ -234,13 +234,13 @@ def _scales(scene: scenes.Scene, layout: CaseLayout, entries: Sequence[int]) -> 
 
 
 def _scale(model: Model, entry: Input, turn: float, component: int) -> tuple[float, float, Origin]:
-    """Ends of the range of an entry where nobody gives one, and what says so.
+    """Default ends of the range of an entry, and their origin.
 
     Args:
-        model: the scene on modes for its response.
+        model: model of the scene with modes for its response.
         entry: the input.
-        turn: of a rod by the entry of the input that turns one most, rad per unit.
-        component: which entry it is.
+        turn: largest turn of a rod by an entry of the input, rad per unit.
+        component: index of the entry.
     """
     value = float(entry.default.ravel(order="F")[component])
     if entry.field == "base.position":
@@ -265,7 +265,7 @@ def _scale(model: Model, entry: Input, turn: float, component: int) -> tuple[flo
 
 
 def _turns(model: Model, span: slice) -> Iterator[float]:
-    """Turn of the rod that each entry of an input turns most, rad per unit of the entry."""
+    """Largest turn of a rod by each entry of an input, rad per unit of the entry."""
     inputs = model.pack()
     at_values = _response(model, inputs)
     for k in range(span.start, span.stop):
@@ -285,7 +285,7 @@ def _response(model: Model, inputs: FloatArray) -> FloatArray:
 
 
 def _turn(rod: DiscreteRod, strains: FloatArray) -> float:
-    """ℓ ∫ |K| dX of strain coordinates, rad: the turn from end to end where a rod bends one way."""
+    """ℓ ∫ |K| dX for strain coordinates, rad: the turn from end to end of a rod that bends in one direction."""
     curvatures = np.zeros((len(MIDDLES), 3))
     for component, columns in rod.columns.items():
         if component < 3:
@@ -294,9 +294,9 @@ def _turn(rod: DiscreteRod, strains: FloatArray) -> float:
 
 
 def _bending_size(model: Model, entry: Input) -> float:
-    """Load that bends the softest rod by a radian at its tip, in the unit of an input that the response does not show.
+    """Load that bends the softest rod by a radian at its tip, in the unit of an input without a response.
 
-    In closed loops no load has a response in the unloaded scene: their joints close along the load path.
+    Loads in closed loops have no response in the unloaded scene, since joints close along the load path.
     """
     softest = min(model.discrete.rods.values(), key=lambda rod: rod.energy_unit / rod.length)
     force = 2 * softest.energy_unit / softest.length

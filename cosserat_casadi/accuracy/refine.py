@@ -1,15 +1,15 @@
 """The cheapest discretisation that meets a tolerance (docs/theory.md, section 10).
 
 Uniform discretisations are refined, level by level, to a reference solution: one whose own error is a small part of
-the tolerance. From there modes per component, intervals and the order of the rotation integrator are coarsened to what
-the tolerance needs. The coarsened model is solved, and its distance to the reference, with what the reference itself
-may be off, is the estimate of its error.
+the tolerance. From there modes per component, intervals and the order of the rotation integrator are coarsened as far
+as the tolerance allows. The coarsened model is solved, and its distance from the reference, plus the error of the
+reference itself, is the estimate of its error.
 
-A rod that is held at both ends has several equilibria near each other. Which equilibrium is found must not hang on the
-discretisation: it is decided on levels that are alike for every tolerance, and for modes that the user fixes.
+A rod that is held at both ends has several equilibria near each other. The discretisation must not decide which of them
+is found: it is decided on levels that are equal for every tolerance, and for modes that the user fixes.
 
-The choice is made at the inputs of the scene, or of the call: a component that they do not excite keeps one mode. Who
-changes the inputs afterwards, to load the rod harder or in another direction, fixes modes and nodes or chooses at the
+The choice is made at the inputs of the scene, or of the call: a component that they do not excite keeps one mode. To
+change the inputs afterwards, to load the rod harder or in another direction, fix modes and nodes or choose at the
 inputs that excite most.
 """
 
@@ -67,16 +67,16 @@ LARGEST_SHAPE_ERROR = 0.1
 """Shape error, relative to the length, above which a discretisation fixed by the user is reported as UNRESOLVED."""
 
 COARSENING_SHARES = (0.85, 0.35)
-"""Shares of the tolerance that coarsening may use up, one try after the other."""
+"""Shares of the tolerance for coarsening, one try after the other."""
 
 DECIDING_TOLERANCE = 1e-5
-"""Tolerance of the solution that decides which equilibrium of a held rod is meant, whatever is asked for."""
+"""Tolerance of the solution that decides which equilibrium of a held rod is computed, for every wanted tolerance."""
 
 MARGIN = 1.02
-"""Factor on the distance to a reference solution whose own error is known."""
+"""Safety factor on the distance from a reference solution with a known error."""
 
 MOST_FAILURES = 2
-"""Levels without an equilibrium after which the next one ends the search."""
+"""Number of levels without an equilibrium that end the search."""
 
 FINER_MODES = 4
 """Modes that are added to the user's to estimate their error."""
@@ -143,34 +143,34 @@ def solve(subject: Any, values: Any = None, **options: Any) -> Any:
     are, and only the error is estimated.
 
     A held rod whose load path ends at an unstable equilibrium, or at none, is relaxed to a stable one. Concentric tubes
-    are straight at first, become curved where they are, and are loaded then; :func:`all_equilibria` finds every one.
+    are first straight, then take their curvatures, then their loads; :func:`all_equilibria` finds every equilibrium.
 
     Args:
         subject: a validated scene, or a model of it: of rods, or of concentric tubes.
-        values: inputs by name, where an input that is left out keeps the scene's value; of a model all stacked too.
+        values: inputs by name, others keep the scene's values; for a model also all inputs stacked.
         options: named as follows.
-        stable: whether a free rod is relaxed too, under loads that have a potential; of a scene with tubes whether the
-            stable equilibrium of least energy is wanted where the first equilibrium is not stable.
+        stable: whether a free rod is relaxed too, under loads with a potential; for tubes whether the stable
+            equilibrium of least energy replaces an unstable first one.
         progress: receives the share of the load path of rods that is done.
-        report: receives the discretisation of rods, in words; of a scene.
-        parameters: of a model, by name or stacked, as :meth:`Model.at` takes them; by default the scene's.
-        start: of a model, like all that follow: where to start; by default the unloaded rod, or straight tubes. From a
-            solution of the same model, continuation follows the inputs from the solution's to the wanted ones, and so
-            stays on its branch. Other parameters are taken at once and, where that fails, followed together with the
-            inputs. Of a scene with obstacles, the contacts of the solution are tried first. From unknowns of shape
-            (size,), Newton is tried at the wanted inputs, and the unloaded rod where that strays.
-        method: of rods, "continuation" (default), "rootfinder" (CasADi's Newton) or "nlpsol" (ipopt); the last two
+        report: receives the discretisation of the rods of a scene, in words.
+        parameters: parameters of a model, by name or stacked, see :meth:`Model.at`; by default the scene's values.
+        start: start of the solve of a model, as all further options are for models; by default the unloaded rod, or
+            straight tubes. From a solution of the same model, continuation follows the inputs from the solution's to
+            the wanted ones, and so stays on its branch. Other parameters are set at once or, if that fails, followed
+            together with the inputs. In a scene with obstacles the contacts of the solution are tried first. From
+            unknowns of shape (size,), Newton is tried at the wanted inputs, then the unloaded rod.
+        method: for rods, "continuation" (default), "rootfinder" (CasADi's Newton) or "nlpsol" (ipopt); the last two
             start at the full load and may find another branch, or none.
-        settings: limits of the continuation, of rods.
-        raise_on_failure: raise instead of returning what did not converge, of rods.
-        estimate_error: whether the error that modes and nodes, or steps, leave is estimated; of rods it costs about a
+        settings: limits of the continuation, for rods.
+        raise_on_failure: whether to raise instead of returning an answer that did not converge, for rods.
+        estimate_error: whether the error by modes and nodes, or steps, is estimated; for rods it costs about a
             Newton step.
 
     Raises:
         SceneError: a value is refused, a stable equilibrium is wanted under loads without a potential, or contact alone
             would have to hold a free rod.
         SolveError: no equilibrium was found and ``raise_on_failure`` is set.
-        ValueError: the method is unknown, or the start is one of another model.
+        ValueError: the method is unknown, or the start belongs to another model.
     """
     if isinstance(subject, Model):
         return solve_model(subject, values, **options)
@@ -190,18 +190,18 @@ def solve_rods(
     progress: Progress | None = None,
     report: Report | None = None,
 ) -> Solution:
-    """Equilibrium of a scene of rods, as :func:`solve` describes it.
+    """Equilibrium of a scene of rods; see :func:`solve`.
 
     Raises:
-        SceneError: as :func:`solve` raises it, and where the scene has tubes.
+        SceneError: as for :func:`solve`, or the scene has tubes.
     """
     refuse_tubes(scene)
     refuse_held_by_contact(scene)
     if stable:
-        # Refused before anything is solved; whether there is a potential does not depend on the discretisation.
+        # Tested before anything is solved, since the discretisation does not decide whether there is a potential.
         coarsest = build(scene, discretise(scene, 1, 2))
         check_potential(coarsest, coarsest.pack(values))
-    # Parameters have the scene's values: what is solved is one scene.
+    # Parameters have the scene's values, so that one scene is solved.
     scene = scene.baked()
     solver = SceneSolver(scene, values, stable, progress, report)
     if scene.touches_exactly:
@@ -209,7 +209,7 @@ def solve_rods(
         in_contact = with_notes(solve_contact_scene(solver, transport))
         return noted_unstable(in_contact) if stable else in_contact
     solution = with_notes(_with_fixed(solver) if scene.accuracy.fixed else _with_tolerance(solver))
-    # The last correction alone may need no step: a user asks what the search has cost.
+    # The last correction may need no step: a user wants the cost of the whole search.
     solution = replace(solution, iterations=solver.iterations)
     if solver.relaxed and solution.stable:
         solution = _with_note(solution, PATH_OF_ENERGY)
@@ -223,10 +223,10 @@ class _Reference:
     """A solution that can serve as a reference for a tolerance.
 
     Attributes:
-        solution: on a uniform discretisation.
-        level: of this discretisation.
+        solution: solution on a uniform discretisation.
+        level: level of this discretisation.
         resolution: its errors.
-        fewer_modes: the finest solution with fewer modes on the way to it; None where it is the first.
+        fewer_modes: the finest earlier solution with fewer modes; None for the first level.
     """
 
     solution: Solution
@@ -238,11 +238,11 @@ class _Reference:
 def _with_tolerance(solver: SceneSolver) -> Solution:
     """The cheapest solution found whose estimated error is below the tolerance.
 
-    Levels are refined as the verdicts ask until one solution can serve as a reference. Without one, the last failure,
-    or the finest solution as UNRESOLVED.
+    Levels are refined by the verdicts until a solution can serve as a reference. If none can, the result is the last
+    failure, or the finest solution as UNRESOLVED.
     """
     if solver.signal_modes > REFERENCE_MODES[-1]:
-        # Not even the finest level sees what the scene asks for: whatever is found is no reference.
+        # Not even the finest level resolves the scene's data: no solution can be a reference.
         solution = _at_level(solver, Level.first(solver.tolerance), None)
         return solution.unresolved() if solution.converged else solution
     found = _of_held_rod(solver) if solver.is_held else _for_tolerance(solver, solver.tolerance)
@@ -252,24 +252,24 @@ def _with_tolerance(solver: SceneSolver) -> Solution:
 
 
 def _for_tolerance(solver: SceneSolver, tolerance: float) -> _Reference | Solution:
-    """A reference for a tolerance, refined from the level that it begins with; or a failure."""
+    """A reference for a tolerance, refined from the tolerance's first level; or a failure."""
     least = solver.signal_modes
     if solver.is_assembly:
-        # On fewer modes what is extrapolated is far too large, and so is the model that it leads to.
+        # With fewer modes the extrapolation is far too large, and so is the model that it leads to.
         least = max(least, TELLING)
     first = Level.first(tolerance, least, layer_nodes(solver.scene), layer_sections(solver.scene, tolerance))
     return _refined(solver, first, tolerance)
 
 
 def _of_held_rod(solver: SceneSolver) -> _Reference | Solution:
-    """A reference for the tolerance, refined from the equilibrium that is meant; or a failure."""
+    """A reference for the tolerance, refined from the decided equilibrium of a held rod; or a failure."""
     found = _for_tolerance(solver, DECIDING_TOLERANCE)
     if isinstance(found, _Reference):
         if solver.tolerance >= DECIDING_TOLERANCE:
             return found
         return _refined(solver, found.level, solver.tolerance, found)
     if found.outcome is Outcome.UNRESOLVED and solver.tolerance > DECIDING_TOLERANCE:
-        # No level resolves it so well, but one may do for less.
+        # No level resolves it so well, but a level may suffice for a larger tolerance.
         return _for_tolerance(solver, solver.tolerance)
     return found
 
@@ -277,15 +277,15 @@ def _of_held_rod(solver: SceneSolver) -> _Reference | Solution:
 def _refined(
     solver: SceneSolver, first: Level, tolerance: float, on_first: _Reference | None = None
 ) -> _Reference | Solution:
-    """A solution that can serve as a reference; without one the last failure, or the finest solution as UNRESOLVED.
+    """A solution that can serve as a reference, or the last failure, or the finest solution as UNRESOLVED.
 
-    The estimate of an UNRESOLVED one is its distance to the finest that has fewer modes.
+    The error estimate of an UNRESOLVED one is its distance from the finest solution with fewer modes.
 
     Args:
-        solver: of the scene.
-        first: the level to begin with.
+        solver: solver of the scene.
+        first: the first level.
         tolerance: wanted error.
-        on_first: verdict on that level, as the reference for a larger tolerance.
+        on_first: verdict on that level for a larger tolerance, if it is known.
     """
     level: Level | None = first
     coarser: Solution | None = None
@@ -298,7 +298,7 @@ def _refined(
         LOG.info("level of %d modes, for an error of %.1e: %s", level.modes, tolerance, type(verdict).__name__)
         if isinstance(verdict, NoEquilibrium):
             failures.append(solution)
-            # Too few modes may have no equilibrium where the rod has one: some more levels are tried.
+            # The rod may have an equilibrium although too few modes have none: some more levels are tried.
             if len(failures) > MOST_FAILURES or solver.taut:
                 return solution
         else:
@@ -306,7 +306,7 @@ def _refined(
                 fewer_modes = coarser
             coarser = solution
         if isinstance(verdict, Enough):
-            # Only now: with few modes a rod may seem unstable that is not.
+            # Not before: with few modes a stable rod may seem unstable.
             relaxed = solver.relax(solution)
             if relaxed is solution or not relaxed.stable:
                 return _Reference(solution, level, verdict.resolution, fewer_modes)
@@ -315,13 +315,13 @@ def _refined(
     if coarser is None:
         return failures[-1]
     if fewer_modes is not None:
-        # The level below is farther off than this one, by about as much as the two are apart.
+        # The level below has a larger error than this one, by about the distance of the two.
         coarser = with_estimate(coarser, fewer_modes, factor=1.0)
     return coarser.unresolved()
 
 
 def _next_level(level: Level, verdict: Verdict) -> Level | None:
-    """Where a verdict leads to; None where there is nothing finer to try."""
+    """The level that a verdict asks for; None if there is no finer one."""
     match verdict:
         case NeedsNodes(nodes):
             return replace(level, min_nodes=nodes)
@@ -340,7 +340,7 @@ def _next_level(level: Level, verdict: Verdict) -> Level | None:
 
 
 def _at_level(solver: SceneSolver, level: Level, coarser: Solution | None) -> Solution:
-    """The solution on a level, on intervals enough for how far the rods turned on the level before."""
+    """The solution on a level, with intervals for the turns of the rods on the level before."""
     turn = solver.unloaded_turn
     if coarser is not None:
         turn = max(turn, largest_turn(coarser))
@@ -350,7 +350,7 @@ def _at_level(solver: SceneSolver, level: Level, coarser: Solution | None) -> So
 
 
 def _coarsened(solver: SceneSolver, resolution: Resolution) -> Solution:
-    """The cheapest solution near a reference; the reference itself where none is near enough to it."""
+    """The cheapest solution near a reference; the reference itself if none is near enough."""
     reference = resolution.preview.reference
     reference_error = resolution.tip_error
     for share in COARSENING_SHARES:
@@ -361,9 +361,9 @@ def _coarsened(solver: SceneSolver, resolution: Resolution) -> Solution:
         if solution is not None:
             solver.iterations += solution.iterations
         if solution is None or not solution.converged:
-            # The preview was too far off; a tighter bound keeps it nearer.
+            # The preview was too inexact; a tighter bound keeps the solution nearer.
             continue
-        # Few modes meet the tip and may still be too stiff to buckle: the reference decides what is stable.
+        # Few modes may have the right tip and still be too stiff to buckle: the reference decides on stability.
         if solution.stable is not reference.stable:
             continue
         judged = replace(
@@ -381,7 +381,7 @@ def _coarsened(solver: SceneSolver, resolution: Resolution) -> Solution:
 
 
 def _with_fixed(solver: SceneSolver) -> Solution:
-    """The solution on the discretisation that the scene asks for, with its error estimated by a finer one."""
+    """The solution on the scene's discretisation, with its error estimated by a finer one."""
     unnamed = None if solver.scene.accuracy.rotation else solver.reference_transport
     discretisation = discretise(solver.scene, transport=unnamed)
     meant = _meant(solver)
@@ -396,7 +396,7 @@ def _with_fixed(solver: SceneSolver) -> Solution:
 def _beside_finer(
     solver: SceneSolver, discretisation: Mapping[str, Discretisation], solution: Solution, meant: Solution | None
 ) -> Solution:
-    """A solution on the discretisation that the scene asks for, with its distance to a finer one as its error."""
+    """A solution on the scene's discretisation, with its distance from a finer solution as its error."""
     turn = largest_turn(solution)
     visible_from = max(solver.signal_modes, min_modes(solution, turn, solver.tolerance))
     finer = {}
@@ -404,7 +404,7 @@ def _beside_finer(
         finer_modes = tuple(max(count + FINER_MODES, visible_from) for count in fixed.modes)
         resolving_nodes = nodes_for_turn(max(finer_modes), max(turn, solver.unloaded_turn))
         finer_nodes = max(fixed.nodes + FINER_NODES, resolving_nodes)
-        # The fixed integrator may leave an error of its own: the reference takes the one that suits the tolerance.
+        # The fixed integrator may have an error: the reference takes the integrator for the tolerance.
         finer[name] = replace(fixed, modes=finer_modes, nodes=finer_nodes, transport=solver.reference_transport)
     finer_sums = [max(sections.counts) for sections in solution.model.discrete.finer_sections.values()]
     finer = summed_at(finer, max(finer_sums, default=0))
@@ -413,20 +413,20 @@ def _beside_finer(
         return solution.unresolved()
     judged = with_estimate(solution, reference)
     shape_error = judged.shape_error_estimate
-    # Written so that an estimate which is not a number counts as too large.
+    # With this comparison an estimate that is NaN counts as too large.
     if shape_error is not None and shape_error <= LARGEST_SHAPE_ERROR:
         return judged
     return judged.unresolved()
 
 
 def _meant(solver: SceneSolver) -> Solution | None:
-    """The equilibrium of a held rod that is meant; None where nothing holds it, or none is found."""
+    """The decided equilibrium of a held rod; None for free rods, or if none is found."""
     if not solver.is_held or solver.signal_modes > REFERENCE_MODES[-1]:
         return None
     found = _for_tolerance(solver, DECIDING_TOLERANCE)
     if isinstance(found, _Reference):
         return found.solution
-    # The modes of the user may have an equilibrium all the same, and one to relax to.
+    # The modes of the user may still have an equilibrium, and one to relax to.
     solver.vain_descents = 0
     return None
 

@@ -1,14 +1,14 @@
-"""How well a solution is resolved, from itself: no finer model is built.
+"""Error estimate of a solution without building a finer model.
 
-Its modes: drop the last two and the last four of every component and see the tips move. Two at a time, since
-symmetry may empty every other one. Geometric extrapolation of the two changes is the error that the modes it has
-leave, a careful one where errors fall faster than that. Its grid: one look at a finer one.
+Modes: drop the last two and the last four of every component and compute the changes of the tips. They are dropped in
+pairs, since symmetry may make every other mode zero. Geometric extrapolation of the two changes is the error by the
+number of modes, a cautious one if errors fall faster. Grid: one evaluation on a finer grid.
 
 Not all errors fall so regularly. Waves along a rod do not show in its last coefficients. The error of a rod with
-supports falls in uneven steps: where the last two modes happen to do little, both the change that they make and its
-ratio to the one before are small, and their product says far too little; for a free rod under strong loads it may do so
-too. And tips are superconvergent: their change tells nothing of the sections between, which are farther off. So a look
-is taken at modes that the solution lacks, and at how both move by them.
+supports falls in uneven steps: if the last two modes happen to have a small effect, both their change and its ratio to
+the change before are small, and their product is far too small; for a free rod under strong loads it may be so too. And
+tips are superconvergent: their change does not tell the error of the sections between, which is larger. So changes of
+tips and sections by missing modes are computed too, called the look.
 """
 
 from __future__ import annotations
@@ -26,50 +26,53 @@ from cosserat_casadi.model.required_modes import WAVES_FACTOR
 from cosserat_casadi.rod.discretisation import Discretisation
 
 MODES_SAFETY = 2.0
-"""Factor on the extrapolated error of the modes."""
+"""Safety factor on the extrapolated error of the modes."""
 
 GRID_SAFETY = 1.5
-"""Factor on the distance to a finer grid, which is not exact either."""
+"""Safety factor on the distance from a finer grid, which is not exact either."""
 
 SUM_SAFETY = 2.0
-"""Factor on the change by finer sums of layers, whose stiffness changes with them."""
+"""Safety factor on the change by finer sums of layers, whose stiffness changes with them."""
 
 FASTEST = 0.02
 """Smallest ratio of the errors with and without two more modes that is believed."""
 
 FURTHER_MODES = 4
-"""Modes and intervals added for a look at rods without waves, more than one uneven step of their error."""
+"""Modes and intervals that a look adds to rods without waves, more than one uneven step of their error."""
 
 SWEEPS = 1
-"""Sweeps of a look at rods without supports: stiffness holds added modes, and a few per cent of the error are left."""
+"""Sweeps of a look at rods without supports: stiffness dominates added modes, and the error is exact to a few per
+cent."""
 
 LOADED_SWEEPS = 2
-"""Sweeps of a look at rods with supports or waves, where what follows the added modes moves them in turn."""
+"""Sweeps of a look at rods with supports or waves, in which unknowns that follow the added modes move these in turn."""
 
 HIDDEN_SAFETY = 1.5
-"""Factor on what that look finds."""
+"""Safety factor on the change by that look."""
 
 NEGLIGIBLE = 0.01
-"""Share of the allowed error below which an extrapolated one is believed: ten times as much would not matter."""
+"""Share of the allowed error below which an extrapolated error is believed: ten times as much would be allowed."""
 
 UNKNOWN = 4
-"""Further modes where the error is beyond all bounds and tells nothing."""
+"""Further modes for an error that is above all bounds and tells nothing."""
 
 CLOSING = 3
-"""Modes of an assembly that are always kept: with fewer its rods may not reach each other."""
+"""Least modes of an assembly: with fewer its rods may not reach each other."""
 
 TELLING = CLOSING + 4
-"""Modes of an assembly from which on two less and four less are two solutions, whose errors tell how fast they fall."""
+"""Least modes of an assembly for which two less and four less give different solutions, and so a rate of
+convergence."""
 
 
 @dataclass(frozen=True)
 class Resolution:
-    """Pose error of a solution: of its tips, in two parts, and of all its sections.
+    """Pose errors of a solution: error of its tips, in two parts, and of all its sections.
 
     Attributes:
         preview: the solution.
-        waves: whether the scene puts waves along its rods, so that the last coefficients may not show what follows.
-        allowed: error of the modes that is allowed; with 0 no extrapolated one is negligible.
+        waves: whether the scene makes waves along its rods, so that the last coefficients may not show the missing
+            ones.
+        allowed: allowed error of the modes; with 0 no extrapolated error is negligible.
     """
 
     preview: Preview
@@ -78,38 +81,38 @@ class Resolution:
 
     @cached_property
     def ratio(self) -> float:
-        """Share of the error that two modes more leave."""
+        """Ratio of the errors with and without two more modes."""
         two_less = self._shift_without(2)
         four_less = self._shift_without(4)
         if not np.isfinite(two_less + four_less):
             return SLOWEST
         if four_less <= 0:
-            # Not even four modes are felt, as in an unloaded rod.
+            # Not even four modes have an effect, as in an unloaded rod.
             return FASTEST
         return float(np.clip(two_less / four_less, FASTEST, SLOWEST))
 
     @cached_property
     def modes_error(self) -> float:
-        """Error that the number of modes leaves."""
+        """Error by the number of modes."""
         return max(self.extrapolated_error, self.hidden_error)
 
     @cached_property
     def hidden_error(self) -> float:
-        """Error found by a look at modes that the solution lacks; 0 where the extrapolated one is negligible."""
+        """Error by a look at missing modes; 0 if the extrapolated error is negligible."""
         if self._sweeps == 0:
             return 0.0
         return HIDDEN_SAFETY * (1 + self._beyond) * change_size(self._look.tips)
 
     @cached_property
     def extrapolated_error(self) -> float:
-        """The rest of a geometric series after the last two modes."""
+        """Remainder of a geometric series after the last two modes."""
         two_less = self._shift_without(2)
-        # The last two modes carry e; all that would follow r e + r² e + … = e r / (1 − r).
+        # The last two modes change the tips by e; all further ones by r e + r² e + … = e r / (1 − r).
         return MODES_SAFETY * two_less * self.ratio / (1 - self.ratio)
 
     @cached_property
     def grid_error(self) -> float:
-        """Error that the intervals and the rotation integrator leave."""
+        """Error by the intervals and the rotation integrator."""
         modes = {}
         finer = {}
         for name, discretisation in self.preview.model.discretisation.items():
@@ -121,7 +124,7 @@ class Resolution:
 
     @cached_property
     def sum_error(self) -> float:
-        """Error that sums of layers leave."""
+        """Error by sums of layers."""
         return SUM_SAFETY * change_size(self.preview.sums_shift())
 
     @cached_property
@@ -141,35 +144,35 @@ class Resolution:
             return UNKNOWN
         if error <= bound:
             return 0
-        # Every two modes leave the share ``ratio`` of the error: ratioⁿ error = bound.
+        # Every two modes multiply the error by ``ratio``: ratioⁿ error = bound.
         pairs = log(bound / error) / log(self.ratio)
         return 2 * ceil(pairs)
 
     @cached_property
     def _sweeps(self) -> int:
-        """Sweeps of the look; 0 where what the tips do needs none."""
+        """Sweeps of the look; 0 if the tips need none."""
         if self.waves or self.preview.model.scene.supports:
             return LOADED_SWEEPS
-        # A layer presses a part of an element, which few modes do not feel at all.
+        # A layer presses a part of an element, which few modes do not resolve at all.
         if self.extrapolated_error < NEGLIGIBLE * self.allowed and not self.preview.model.discrete.pressed_rods:
             return 0
         return SWEEPS
 
     @cached_property
     def _beyond(self) -> float:
-        """Change by modes beyond the modes of the look, over the change that the look tells."""
+        """Change by modes beyond the modes of the look, over the change by the look."""
         return self.preview.model.discrete.share_of_more_modes(FURTHER_MODES)
 
     @cached_property
     def _look(self) -> FinerShift:
-        """Change by modes that the solution lacks."""
+        """Change by missing modes."""
         finer = {}
         for name, discretisation in self.preview.model.discretisation.items():
             finer[name] = self._looked_at(discretisation)
         return self.preview.finer_shift(finer, self._sweeps)
 
     def _looked_at(self, discretisation: Discretisation) -> Discretisation:
-        """The finer discretisation of a rod at which a look is taken."""
+        """The finer discretisation of a rod for the look."""
         if self.waves:
             # Products of waves have twice their frequency.
             modes = tuple(WAVES_FACTOR * m for m in discretisation.modes)
@@ -178,12 +181,12 @@ class Resolution:
         return replace(discretisation, modes=modes, nodes=discretisation.nodes + FURTHER_MODES)
 
     def _shift_without(self, count: int) -> float:
-        """Largest change of the watched poses with so many modes less of every component."""
+        """Largest change of the watched poses with ``count`` modes less in every component."""
         assembly = self.preview.model.discrete.is_assembly
         least = CLOSING if assembly else 1
         fewer = {}
         for name, discretisation in self.preview.model.discretisation.items():
-            # No component loses its last mode, and none gains one.
+            # Every component keeps one mode, and none gains one.
             kept = [max(min(m, least), m - count) for m in discretisation.modes]
             fewer[name] = tuple(kept)
         shift = self.preview.mode_shift(fewer)

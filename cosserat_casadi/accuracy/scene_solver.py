@@ -1,4 +1,4 @@
-"""A scene at one set of inputs, solved on one discretisation after the other: what all these solves share.
+"""Common state of the solves of one scene, at one set of inputs, on one discretisation after the other.
 
 See docs/theory.md, sections 9 and 10.
 """
@@ -38,7 +38,7 @@ TIGHT = 1e-6
 """Tolerance below which a reference solution takes the rotation integrator of eighth order, else of sixth."""
 
 MOST_VAIN_DESCENTS = 3
-"""Discretisations on which descent is tried in vain: on few modes a rod may have no stable equilibrium."""
+"""Most discretisations on which descent fails: with few modes a rod may have no stable equilibrium."""
 
 
 @dataclass
@@ -48,12 +48,12 @@ class SceneSolver:
     Attributes:
         scene: the scene.
         values: inputs by name.
-        stable: whether a stable equilibrium is wanted of a free rod too.
-        progress: told the share of the load path that is done.
-        report: told each attempt.
+        stable: whether a stable equilibrium is wanted for a free rod too.
+        progress: receives the share of the load path that is done.
+        report: receives each attempt.
         relaxed: whether the current equilibrium, or the one it was corrected from, was reached by descent in energy.
-        vain_descents: number of discretisations on which descent was tried in vain.
-        taut: whether the last solve ended early at rods that cannot extend, held straight: no modes help there.
+        vain_descents: number of discretisations on which descent has failed.
+        taut: whether the last solve ended early because of taut inextensible rods, for which more modes do not help.
         iterations: Newton steps so far, on all discretisations.
     """
 
@@ -74,7 +74,7 @@ class SceneSolver:
 
     @property
     def reference_transport(self) -> str:
-        """Rotation integrator of a reference solution that suits the tolerance."""
+        """Rotation integrator of a reference solution for the tolerance."""
         if self.tolerance < TIGHT or self.is_held:
             return "magnus8"
         return "magnus6"
@@ -89,12 +89,12 @@ class SceneSolver:
 
     @property
     def is_assembly(self) -> bool:
-        """Whether joints or rods that carry others close rods to each other."""
+        """Whether joints or carried rods tie rods together."""
         return bool(self.scene.joints) or any(rod.base.rod is not None for rod in self.scene.rods)
 
     @cached_property
     def unloaded_turn(self) -> float:
-        """Bound of the angle through which an unloaded rod turns from end to end, rad."""
+        """Upper bound on the turn of an unloaded rod from end to end, rad."""
         turns = []
         for rod in self.scene.rods:
             intrinsic = known(rod_properties(rod).intrinsic_curvature(SAMPLES))
@@ -103,12 +103,12 @@ class SceneSolver:
 
     @cached_property
     def signal_modes(self) -> int:
-        """Modes below which a level is blind to what the scene puts along its rods."""
+        """Least modes of a level that resolves the waves in the scene's data."""
         return signal_modes(self.scene)
 
     @property
     def wave_modes(self) -> int:
-        """``signal_modes`` where the scene puts waves along its rods, 0 where all signals vary slowly."""
+        """``signal_modes`` of a scene with waves along its rods, 0 if all signals vary slowly."""
         if self.signal_modes > SLOW_MODES:
             return self.signal_modes
         return 0
@@ -122,10 +122,10 @@ class SceneSolver:
         return model
 
     def solve(self, discretisation: dict[str, Discretisation], coarser: Solution | None) -> Solution:
-        """Solution on a discretisation, from one with fewer modes where that is near, else from the unloaded scene."""
+        """Solution on a discretisation, from a coarser solution if that is near, else from the unloaded scene."""
         model = self.build(discretisation)
         if coarser is not None:
-            # Stays on the branch of the coarser solution, and costs a few Newton steps only.
+            # This stays on the branch of the coarser solution, and costs only a few Newton steps.
             corrected = corrected_from(model, prolong(coarser, model), coarser.inputs)
             if corrected is not None:
                 return self._counted(corrected)
@@ -144,9 +144,9 @@ class SceneSolver:
         return solution
 
     def relax(self, solution: Solution) -> Solution:
-        """A stable solution where one is wanted and can be found, else the given solution.
+        """A stable solution if one is wanted and found, else the given solution.
 
-        A held rod is always wanted stable: springs of the solver, not loads of the scene, lead to its supports.
+        For a held rod it is always wanted: springs of the solver, not loads of the scene, lead to its supports.
         """
         wanted_stable = self.stable or bool(self.scene.supports)
         if not wanted_stable or solution.stable or self.vain_descents == MOST_VAIN_DESCENTS:
@@ -161,7 +161,7 @@ class SceneSolver:
 
 
 def corrected_from(model: Model, start: FloatArray, inputs: FloatArray) -> Solution | None:
-    """Newton from a near start; None where it does not stay near, so that it may be another branch."""
+    """Newton's method from a near start; None if it does not stay near, and may be on another branch."""
     settings = ContinuationSettings().newton
     result = correct(model, inputs, start, settings)
     if result is None:

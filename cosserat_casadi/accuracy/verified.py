@@ -1,4 +1,4 @@
-"""The verified ranges and errors of a discretisation, as exported folders tell them."""
+"""The verified ranges and errors of a discretisation, for exported folders."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from cosserat_casadi.equilibrium.locking import locking_sentence
 
 @dataclass(frozen=True)
 class Verified:
-    """Ranges over which the error of a discretisation was estimated, and how large it is there.
+    """Ranges over which the error of a discretisation was estimated, and the estimates.
 
     Attributes:
-        ranges: ``column=low:high`` of inputs and parameters; all else has the scene's value.
-        solves: points of the ranges that were solved.
-        error_estimate: largest error estimate of these points; None where no point has an equilibrium.
-        without_equilibrium: how many points have no equilibrium.
+        ranges: ``column=low:high`` of inputs and parameters; others have the scene's value.
+        solves: number of solved points of the ranges.
+        error_estimate: largest error estimate of these points; None if no point has an equilibrium.
+        without_equilibrium: number of points without an equilibrium.
         within: whether the error is within the tolerance at all points with an equilibrium; None without a tolerance.
-        locked: names of the inputs that move nothing on this discretisation, and would on more modes.
+        locked: names of the inputs that move nothing on this discretisation, but would on more modes.
     """
 
     ranges: tuple[str, ...]

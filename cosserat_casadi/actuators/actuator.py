@@ -1,4 +1,4 @@
-"""Base class of actuators: an effort, and the quantity of the strains that the effort works on.
+"""Base class of actuators: an effort, and the quantity of the strains on which the effort does work.
 
 A member is one file and one line of the registry. It names its effort and the conjugate quantity with their units, and
 gives that quantity on the grid of a rod; residual, Jacobian, energy and outputs follow from it.
@@ -26,14 +26,14 @@ class Actuator(Kind, ABC, Generic[RecordType]):
     """One kind of actuator. The methods take ``actuator``, the frozen record of the scene.
 
     Attributes:
-        record: the record of the scene, which says the unit of the effort and the least that it can be.
+        record: the record of the scene, with the unit and the least value of the effort.
         kind: the word of the scene format.
         effort: name of the effort, an input of the record.
-        conjugate: name of the quantity that the effort works on.
+        conjugate: name of the quantity on which the effort does work.
         conjugate_unit: SI unit of that quantity.
-        energy_sign: 1 where the energy is effort times quantity, as of a tension; −1 where the effort does that much
-            work on the rod, as a pressure does.
-        drawn_as: a thin line with a knob at its end, or a broad translucent one.
+        energy_sign: 1 if the energy is effort times quantity, as for a tension; −1 if this is the work on the rod, as
+            for a pressure.
+        drawn_as: style in figures: a thin line with a knob at its end, or a broad translucent line.
     """
 
     record: ClassVar[type[ActuatorRecord]]
@@ -59,18 +59,18 @@ class Actuator(Kind, ABC, Generic[RecordType]):
         return self.quantity(actuator, grid)
 
     def margin(self, actuator: RecordType, values: Mapping[str, Matrix]) -> Matrix | None:
-        """How far inputs, 1×1 each, are from the end of the actuator's law; not positive beyond it.
+        """Margin of inputs, 1×1 each, to the end of the actuator's law; not positive beyond it.
 
-        None of an actuator whose law has no end.
+        None for an actuator whose law has no end.
         """
         return None
 
     def compliance(self, actuator: RecordType) -> tuple[Scalar, Scalar]:
-        """Extension of the prescribed quantity by a unit of effort: 1/EA of each metre, and 1/k; zero if rigid."""
+        """Extension of the prescribed quantity by a unit of effort: 1/EA per metre, and 1/k; zeros if rigid."""
         return 0.0, 0.0
 
     def resting_effort(self, actuator: RecordType) -> Scalar:
-        """Effort at which an elastic actuator has the conjugate that is prescribed."""
+        """Effort at which an elastic actuator has its prescribed conjugate."""
         return 0.0
 
     def acts_on(self, actuator: RecordType, rod: str) -> bool:
@@ -78,13 +78,13 @@ class Actuator(Kind, ABC, Generic[RecordType]):
         return bool(actuator.rod == rod)
 
     def breaks(self, actuator: RecordType) -> tuple[Scalar, ...]:
-        """Abscissae at which the stress jumps: where the actuator enters the rod and where it ends."""
+        """Abscissae at which the stress jumps: entry and end of the actuator."""
         return span_ends(actuator)
 
     def prescribes_conjugate(self, actuator: RecordType) -> bool:
-        """Whether the scene gives the quantity, so that the effort is an unknown."""
+        """Whether the scene prescribes the conjugate, so that the effort is an unknown."""
         return False
 
     def may_go_slack(self, actuator: RecordType) -> bool:
-        """Whether an unknown effort vanishes where the quantity is below its prescribed value."""
+        """Whether an unknown effort is zero if the conjugate is below its prescribed value."""
         return False

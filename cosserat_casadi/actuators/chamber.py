@@ -1,10 +1,10 @@
 """Pressurised channels along a rod.
 
 A channel of area A at D(X) holds the volume V = A ℓ ∫ (Γ + K × D)_z dX, on which a pressure p does the work p δV: the
-force p A e_z on the sections and the moment D × p A e_z, whatever the rod's strain. A and D may grow with the pressure;
-the energy is −p V(ξ, p) then, and what the pressure does on the wall stays in the wall.
+force p A e_z on the sections and the moment D × p A e_z, for every strain of the rod. A and D may grow with the
+pressure; the energy is then −p V(ξ, p), and the work of the pressure on the wall stays in the wall.
 
-A round wall of radii a and b, modulus E and Poisson's ratio ν that keeps its length widens by the share
+A round wall of radii a and b, modulus E and Poisson's ratio ν and constant length widens by the share
 u/a = (1 + ν) p/E ((1 − 2ν) a² + b²)/(b² − a²): Lamé's cylinder in plane strain.
 """
 
@@ -27,7 +27,7 @@ from cosserat_casadi.rod.actuation import StrainSum
 from cosserat_casadi.scene.actuator_records import ChamberWall
 
 SMALL_STRAIN = 0.1
-"""Strain around the bore up to which the linear wall is believed: one of rubber has 2 to 7 % more area there."""
+"""Strain around the bore up to which the linear wall is used: a rubber wall has 2 to 7 % more area there."""
 
 BENDINGS_AND_EXTENSION = (0, 1, 5)
 """Strains K_x, K_y and Γ_z, on which the pressure does work."""
@@ -44,7 +44,7 @@ class ChamberActuator(Actuator[scenes.Chamber]):
     energy_sign = -1.0
 
     def worked_on(self, actuator: scenes.Chamber, grid: Grid, values: Mapping[str, Matrix]) -> StrainSum:
-        """The volume of the channel as the pressure has widened it."""
+        """The volume of the channel widened by the pressure."""
         volume = self.quantity(actuator, grid)
         if actuator.wall is None and not actuator.area_growth and not actuator.offset_growth:
             return volume
@@ -53,7 +53,7 @@ class ChamberActuator(Actuator[scenes.Chamber]):
         return replace(volume, factors=(of_moment, of_moment, of_area))
 
     def margin(self, actuator: scenes.Chamber, values: Mapping[str, Matrix]) -> Matrix | None:
-        """Share of the area that is left, or of the small strains of the wall."""
+        """Remaining share of the area, or of the admitted strain of the wall."""
         pressure = values["pressure"]
         wall = actuator.wall
         if wall is None:
@@ -91,7 +91,7 @@ def _growth_of_area(actuator: scenes.Chamber, pressure: Matrix) -> Scalar:
 
 
 def _widening(wall: ChamberWall, pressure: Matrix) -> Scalar:
-    """u/a, the strain around the bore of a wall that is not reinforced."""
+    """u/a, the strain around the bore of an unreinforced wall."""
     inner = wall.inner_radius**2
     outer = wall.outer_radius**2
     nu = wall.poisson_ratio

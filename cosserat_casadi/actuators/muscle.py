@@ -1,8 +1,8 @@
-"""Active moment and force in the sections of a rod, as muscles and active materials have them.
+"""Active moment and force in the sections of a rod, as by muscles and active materials.
 
 A muscle of activation a has in each section the active moment a p(X) (l + D × f) and the active force a p(X) f, in
-section axes, beside the elastic ones. Its work on the rod is a W with W = ℓ ∫ p ((l + D × f)·K + f·Γ) dX. A moment
-K_b κ₀(X) is the same as an unloaded curvature κ₀(X), which the scene may give instead.
+section axes, beside the elastic ones. Its work on the rod is a W with W = ℓ ∫ p ((l + D × f)·K + f·Γ) dX. A moment K_b
+κ₀(X) is equivalent to an unloaded curvature κ₀(X), which the scene may give instead.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def _work(actuator: scenes.Muscle, grid: Grid, series: Numbers) -> StrainSum:
     lx, ly, lz = actuator.moment
     stresses = [lx + y * fz, ly - x * fz, lz + x * fy - y * fx, fx, fy, fz]
     strains = [*actuator.curvature, 0.0, 0.0, 0.0]
-    # One whose numbers are all zero, as a sweep over its moment may have it, does no work on the first strain.
+    # A muscle with zeros alone, as in a sweep over its moment, does no work on the first strain.
     components = [c for c in range(6) if not is_zero(stresses[c]) or not is_zero(strains[c])] or [0]
 
     def everywhere(numbers: Sequence[Any]) -> Numbers:

@@ -1,4 +1,4 @@
-"""Where an actuator runs through the sections of a rod."""
+"""Routing of actuators through the sections of a rod."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def routing(actuator: Any, grid: Grid) -> Routing:
 
 
 def holes(actuator: Any) -> tuple[Scalar, ...] | None:
-    """Abscissae of the holes that a tendon is straight between, from where it enters on; None of a continuous one."""
+    """Abscissae of the holes of a tendon that is straight between them, its entry first; None for a continuous one."""
     inside = getattr(actuator, "holes", None)
     if inside is None:
         return None
@@ -53,7 +53,7 @@ def drawn_places(actuator: Any, samples: FloatArray) -> FloatArray:
 
 
 def straight_routing(actuator: Any, grid: Grid, friction: Matrix | None = None) -> HoleRouting:
-    """Holes of a tendon that is straight between them; ``friction``: μ p of one that rubs."""
+    """Holes of a tendon that is straight between them; ``friction``: μ p of a tendon with friction."""
     through = holes(actuator)
     assert through is not None, "asked for of a tendon with holes"
     nodes = np.array([grid.node_at(at) for at in through])
@@ -70,7 +70,7 @@ def offset_at(actuator: Any, X: Numbers) -> tuple[Numbers, Numbers]:
 
 
 def span_ends(actuator: Any) -> tuple[Scalar, ...]:
-    """Where an actuator begins and ends: the stress jumps there."""
+    """Abscissae of an actuator's beginning and end, at which the stress jumps."""
     start, end = actuator.span
     return (start, end)
 
@@ -96,7 +96,7 @@ def _polynomial(offset: Any, X: Numbers) -> tuple[Numbers, Numbers]:
             values.append(np.full(X.shape[0], coefficients[0]))
             slopes.append(np.zeros(X.shape[0]))
             continue
-        # A constant polynomial gives one number; all abscissae are wanted.
+        # A constant polynomial gives one number, which is repeated for all abscissae.
         abscissae = known(X)
         values.append(polynomial.polyval(abscissae, coefficients) + 0.0 * abscissae)
         slopes.append(polynomial.polyval(abscissae, polynomial.polyder(coefficients)) + 0.0 * abscissae)

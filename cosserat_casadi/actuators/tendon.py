@@ -29,13 +29,13 @@ class TendonActuator(Actuator[scenes.Tendon]):
     drawn_as = "cable"
 
     def quantity(self, actuator: scenes.Tendon, grid: Grid) -> Routing | HoleRouting:
-        """The routing, whose length the tension works on."""
+        """The routing, on whose length the tension does work."""
         if actuator.holes is not None:
             return straight_routing(actuator, grid)
         return routing(actuator, grid)
 
     def worked_on(self, actuator: scenes.Tendon, grid: Grid, values: Mapping[str, Matrix]) -> ShapeQuantity:
-        """The routing, on which a cable with friction rubs."""
+        """The routing, with friction for these inputs."""
         friction = actuator.friction * values["pull"]
         if is_zero(friction) or is_zero(actuator.friction):
             return self.quantity(actuator, grid)
@@ -48,7 +48,7 @@ class TendonActuator(Actuator[scenes.Tendon]):
         return (*super().breaks(actuator), *(actuator.holes or ()))
 
     def compliance(self, actuator: scenes.Tendon) -> tuple[Scalar, Scalar]:
-        """1/EA, 1/N, and 1/k, m/N."""
+        """Compliance 1/EA of the cable, 1/N, and 1/k of its winch, m/N."""
         by_length: Scalar = 0.0 if actuator.axial_stiffness is None else 1 / actuator.axial_stiffness
         at_base: Scalar = 0.0 if actuator.winch_stiffness is None else 1 / actuator.winch_stiffness
         return by_length, at_base
@@ -58,9 +58,9 @@ class TendonActuator(Actuator[scenes.Tendon]):
         return actuator.pretension
 
     def prescribes_conjugate(self, actuator: scenes.Tendon) -> bool:
-        """Where the scene gives a length."""
+        """Whether the scene gives a length."""
         return actuator.length is not None
 
     def may_go_slack(self, actuator: scenes.Tendon) -> bool:
-        """Where the scene lets a cable of given length sag."""
+        """Whether the scene lets a cable of given length go slack."""
         return bool(actuator.slack)

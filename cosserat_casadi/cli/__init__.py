@@ -1,1 +1,1 @@
-"""The command line: one file a command, their reports, and their progress."""
+"""The command line: one file per command, with reports and progress bars."""

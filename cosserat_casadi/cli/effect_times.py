@@ -1,4 +1,4 @@
-"""Times that effects cost: of loads and actuators in compiled C, of inertia and damping in CasADi's virtual machine."""
+"""Run times of effects: loads and actuators in compiled C, inertia and damping in CasADi's virtual machine."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from cosserat_casadi.model.operations import Count, count
 from cosserat_casadi.numerics.progress import StageProgress
 
 TURNS = 5
-"""Times that each model is timed beside others."""
+"""Number of rounds in which all models are timed in turn."""
 
 
 MotionCost = dict[str, tuple[Count, float]]
@@ -32,16 +32,16 @@ LABELS = {
     "inverse_dynamics": "inverse dynamics",
     "dynamics_jacobian": "inverse dynamics with K, C and M",
 }
-"""Labels of the functions of a model that are timed: of statics, then of a motion."""
+"""Labels of the timed functions of a model: statics, then motion."""
 
 OF_DAMPING = "  of which damping"
-"""Label of what damping adds to the row above."""
+"""Label of the time added by damping to the row above."""
 
 
 def motion_costs(*models: Model) -> list[MotionCost]:
     """Operations and times of models built for a motion, in their order.
 
-    Models are timed in turn, and the best of several turns counts: what else the machine does slows all models.
+    Models are timed in turn, and the best of several rounds counts: other load on the machine affects all alike.
     """
     turns = [[_motion_times(model) for model in models] for _ in range(TURNS)]
     costs = []
@@ -52,7 +52,7 @@ def motion_costs(*models: Model) -> list[MotionCost]:
 
 
 def _motion_times(model: Model) -> dict[str, float]:
-    """Times of a model built for a motion, at rest in the unloaded shape: they are the same everywhere."""
+    """Times of a model built for a motion, at rest in the unloaded shape: they do not depend on the state."""
     x = model.unloaded()
     inputs = model.pack()
     still = np.zeros(model.size)
@@ -66,15 +66,15 @@ def _motion_times(model: Model) -> dict[str, float]:
 def effect_times(
     scene: scenes.Scene, compiler: str, progress: StageProgress | None = None
 ) -> tuple[Times | str, dict[str, Times | str]]:
-    """Times of a scene, and of the scene without each of its loads and actuators by name; a sentence where one fails.
+    """Times of a scene, and of the scene without each load or actuator, by name; a sentence for a failure.
 
     Args:
         scene: the scene.
         compiler: command of a C compiler.
-        progress: told the program that is compiled, how many programs are, and of how many.
+        progress: called with the current program, the number of compiled programs, and the number of all.
     """
     with ExitStack() as stack:
-        # The compiler works on all of them at once; nothing is timed until it is done.
+        # All programs are compiled in parallel; timing starts afterwards.
         whole = stack.enter_context(closing(Program(build(scene), compiler)))
         without = {}
         for cause in scene.causes:
@@ -90,12 +90,12 @@ def effect_times(
 
 
 def print_effects(console: Console, rods: Sequence[str], whole: Times | str, parts: Mapping[str, Times | str]) -> None:
-    """Time that each effect adds to the compiled times, µs.
+    """Print the time that each effect adds to the compiled times, µs.
 
     Args:
         console: where to print.
-        rods: names of the scene's rods; the IGM that is timed is of the first.
-        whole: times of the scene; a sentence where it could not be timed.
+        rods: names of the scene's rods; the timed IGM is that of the first one.
+        whole: times of the scene; a sentence after a failure.
         parts: times of the scene without each effect, by its name.
     """
     igm = f"IGM of {escape(rods[0])} alone" if len(rods) > 1 else "IGM"
@@ -109,7 +109,7 @@ def print_effects(console: Console, rods: Sequence[str], whole: Times | str, par
         if isinstance(without, str):
             table.add_row(escape(name), "not timed: without it", escape(without), "")
             continue
-        # What an effect adds is what is saved without it.
+        # The time of an effect is the difference between both scenes.
         table.add_row(
             escape(name),
             f"{whole.igm - without.igm:+.2f}",
@@ -120,13 +120,13 @@ def print_effects(console: Console, rods: Sequence[str], whole: Times | str, par
 
 
 def print_motion_times(console: Console, unknowns: int, motion: MotionCost, undamped: MotionCost | None = None) -> None:
-    """Time that inertia and damping add to a residual and to a Jacobian.
+    """Print the time that inertia and damping add to a residual and to a Jacobian.
 
     Args:
         console: where to print.
-        unknowns: of the model in motion.
+        unknowns: number of unknowns of the model in motion.
         motion: cost of the model in motion.
-        undamped: cost of the model without its damping; None where the scene names none.
+        undamped: cost of the model without its damping; None for a scene without damping.
     """
     table = table_of("function", right=("operations", "µs", "over statics"))
     table.title = f"In motion, {unknowns} unknowns, in CasADi's virtual machine (not compiled)"
@@ -142,7 +142,7 @@ def print_motion_times(console: Console, unknowns: int, motion: MotionCost, unda
 
 
 def compact_number(value: float) -> str:
-    """Two digits behind the point of small numbers, none of large numbers."""
+    """Text with two decimals for small numbers, none for large numbers."""
     if not isfinite(value):
         return "–"
     if value < 10:

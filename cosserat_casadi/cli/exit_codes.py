@@ -7,7 +7,7 @@ NOT_FOUND = 3
 """No equilibrium was found, or the error is above the tolerance; the output says so."""
 
 NOT_WRITTEN = 4
-"""A file or standard output could not be written, as on a full disk; nothing half-written stays."""
+"""A file or standard output could not be written, e.g. on a full disk; no incomplete file remains."""
 
 INTERRUPTED = 130
 """Stopped by the user."""

@@ -1,6 +1,6 @@
 """The command line: begin, solve, view, follow a path, simulate, find inputs, identify, sweep, check, export.
 
-A command loads its module when it is run.
+The module of a command is loaded when the command runs.
 """
 
 from __future__ import annotations
@@ -52,12 +52,12 @@ LINES = {
     "export": "Write a scene as C sources, a page for a browser, an FMU, or a model of MuJoCo.",
     "tune": "Find one discretisation for ranges of inputs, or for load cases.",
 }
-"""First sentence of the help of every command; the module of a command and its function have its name."""
+"""First sentence of the help of every command; its module and its function have the name of the command."""
 
 __all__ = ["INTERRUPTED", "NOT_FOUND", "REFUSED", "app", "main", "run"]
 
 STOPPED = "Stopped. Files that were not finished were not written."
-"""Said of a command that a signal has stopped."""
+"""Message about a command stopped by a signal."""
 
 
 def load_command(name: str) -> Any:
@@ -75,7 +75,7 @@ def load_command(name: str) -> Any:
 
 
 class CommandGroup(TyperGroup):
-    """All commands: known by name and line until a command is run."""
+    """Group of all commands, which are loaded only when run."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
@@ -83,7 +83,7 @@ class CommandGroup(TyperGroup):
             self.add_command(TyperCommand(name, help=line))
 
     def resolve_command(self, context: Any, arguments: list[str]) -> tuple[str | None, Any, list[str]]:
-        """The command that arguments begin with, and the arguments behind it."""
+        """The command at the start of the arguments, and the remaining arguments."""
         name, command, rest = super().resolve_command(context, arguments)
         if name in LINES:
             command = load_command(name)
@@ -98,9 +98,9 @@ app = typer.Typer(
 
 
 def _print_version(asked: bool) -> None:
-    """Print what runs here, and end."""
+    """Print the versions, and end."""
     if asked:
-        # Imported here, because CasADi takes long to load and the help of the commands needs none of it.
+        # Imported here, because CasADi takes long to load, and help does not need it.
         import casadi as ca
 
         from cosserat_casadi import __version__
@@ -127,17 +127,17 @@ def main() -> None:
     try:
         install_handlers()
         end_in_time(STOPPED, {signal.SIGINT: INTERRUPTED, signal.SIGTERM: TERMINATED})
-        # The command itself: called as an app it would put Typer's hook for uncaught errors in the place of ours.
+        # Called as a command, not as an app, which would replace our hook for uncaught errors by Typer's.
         exit_code = run(typer.main.get_command(app))
         remove_handlers()
     except KeyboardInterrupt:
-        # A signal that comes while the command begins or ends finds it outside of what catches the others.
+        # A signal at the start or the end of the command is outside the handlers of run.
         remove_handlers()
         exit_code = _stopped()
     if exit_code == INTERRUPTED and was_terminated():
         exit_code = TERMINATED
     if was_interrupted():
-        # What CasADi was stopped in may not outlive the interpreter: the process ends without its last rites.
+        # Interrupted CasADi objects must not be finalised after the interpreter: the process ends without cleanup.
         flush_streams()
         remove_temporary_files()
         os._exit(exit_code)
@@ -155,15 +155,15 @@ def run(command: Callable[..., object]) -> int:
         return INTERRUPTED
     except (KeyboardInterrupt, typer.Abort):
         return _stopped()
-    # Raised by commands that end with a code of their own.
+    # Raised by commands with a specific exit code.
     except typer.Exit as stop:
         return stop.exit_code
     except Exception as error:
-        # An interrupt inside CasADi or in an import comes out as some other error.
+        # An interrupt inside CasADi or in an import appears as another error.
         if was_interrupted():
             return _stopped()
         return _failed(console, error)
-    # Typer makes this code of an interrupt that a command lets through.
+    # Typer's exit code for an interrupt that a command does not catch.
     if exit_code == INTERRUPTED:
         return _stopped()
     if isinstance(exit_code, int):
@@ -172,10 +172,10 @@ def run(command: Callable[..., object]) -> int:
 
 
 def _failed(console: Console, error: Exception) -> int:
-    """Print why a command failed; return its exit code.
+    """Print the reason of a failure, and return its exit code.
 
     Raises:
-        Exception: the error itself, where it is none that a user can do something about.
+        Exception: the error itself, if it is an internal one.
     """
     if isinstance(error, CosseratError):
         if isinstance(error, SceneError | ExportError):
@@ -183,22 +183,22 @@ def _failed(console: Console, error: Exception) -> int:
         else:
             _print_error(console, str(error))
         console.print(f"Help: cosserat docs {error.page}")
-        # The input is in order where the disk is full.
+        # A full disk is not a fault of the input.
         return NOT_WRITTEN if isinstance(error, WriteError) else REFUSED
     if isinstance(error, BrokenPipeError):
-        # The reader has seen enough, as head does.
+        # The reader has closed the pipe, e.g. head.
         silence_output()
         return NOT_WRITTEN
-    # Without a number it is not the system's word on a file.
+    # Without a number it is not an error of the system.
     if isinstance(error, OSError) and error.errno is not None:
         silence_output()
         _print_error(console, _system_sentence(error))
         return NOT_WRITTEN
-    # Typer's own refusals (an unknown option, a missing argument) have no public base class to catch.
+    # Refusals by Typer (an unknown option, a missing argument) have no public base class.
     if hasattr(error, "format_message") and hasattr(error, "exit_code"):
-        # What checks values puts its own word before the sentence.
+        # Validation puts a prefix before the sentence.
         sentence = error.format_message().replace("Value error, ", "")
-        # A bare command has shown its help instead, and has no sentence.
+        # A command without arguments has printed its help, and has no sentence.
         if not sentence:
             return int(error.exit_code)
         _print_error(console, sentence)
@@ -215,18 +215,18 @@ def _stopped() -> int:
 
 
 def _system_sentence(error: OSError) -> str:
-    """The message of the system with the file; without a file it is standard output or a temporary file."""
+    """The message of the system with the file; without a name it is standard output or a temporary file."""
     if error.filename is None:
         return f"Standard output or a temporary file could not be written: {error.strerror}"
     return f"{error.filename}: {error.strerror}"
 
 
 def _print_refusal(console: Console, error: SceneError | ExportError) -> None:
-    """Print every reason for which an input is refused."""
+    """Print every reason for the refusal of an input."""
     count = counted(len(error.problems), "problem")
     console.print(f"[bold red]Refused:[/] {count}.")
     for problem in error.problems:
-        # Not wrapped: a path cut in two cannot be copied.
+        # Without wrapping, so that paths can be copied.
         console.print(f"  {escape(str(problem))}", soft_wrap=True)
 
 

@@ -44,20 +44,20 @@ def asked_ranges(ranges: list[str] | None, scene: Scene) -> dict[str, tuple[floa
 
 
 def asked_cases(over: Path | None, ranges: list[str] | None, scene: Scene) -> FloatArray | None:
-    """Load cases that ``--over`` and counts of ``--range`` ask for, shape (count, size of a case).
+    """Load cases of ``--over`` and of ``--range`` with counts, shape (count, size of a case).
 
-    Several ranges are a grid, and every row of a file meets each of its values.
+    Several ranges form a grid, which is combined with every row of a file.
 
     Args:
         over: file of rows, or of a grid.
         ranges: texts of ``--range``.
-        scene: has their columns.
+        scene: scene with the columns.
 
     Returns:
-        None where there is no file and no range counts values: these are whole ranges.
+        the load cases; None without a file and without counts in ranges, which are then continuous.
 
     Raises:
-        SceneError: with every fault; among them a range without a count beside a file or a range with one.
+        SceneError: with every fault, e.g. a range without a count together with a file or with counted ranges.
     """
     ranges = ranges or []
     if over is None and all(read_range(text).count is None for text in ranges):
@@ -77,7 +77,7 @@ def asked_cases(over: Path | None, ranges: list[str] | None, scene: Scene) -> Fl
 
 
 SUFFIXES = {"--csv": ".csv", "--sobol": ".json", "--write": ".toml"}
-"""Suffixes of options that write one format in all commands."""
+"""Suffixes of the options that write the same format in all commands."""
 
 
 def check_files(
@@ -92,17 +92,17 @@ def check_files(
     """Add the faults of files that cannot be written, before time is spent on a solve.
 
     Args:
-        files: files to be written, by the option that asks for each; None where none is asked for.
-        scene: file of the scene, whose tables are read too.
-        settings: changes of the scene, which may name other tables.
+        files: files to be written, by option; None for a missing option.
+        scene: file of the scene, which may refer to tables.
+        settings: changes of the scene, which may refer to other tables.
         problems: list that the faults are added to: a file cannot be written, would be written over one that is read,
             or has the suffix of another format.
         others: files that the command reads beside the scene.
-        output_suffix: suffix of the format of the result; None where the command looks at such a file itself.
-        meshes: option of a figure or an animation that may be a file of meshes.
+        output_suffix: suffix of the result file; None if the command checks that file.
+        meshes: option of a figure or an animation that also accepts a file of meshes.
 
     Raises:
-        PlotUnavailableError: a figure is asked for and matplotlib is not installed.
+        PlotUnavailableError: a figure is requested, and matplotlib is not installed.
     """
     for option, file in files.items():
         if option in ("--plot", "--animation"):
@@ -137,13 +137,13 @@ def check_figure(file: Path | None, option: str, problems: list[Problem], *, mes
     """Add the faults of the file of a figure or an animation.
 
     Args:
-        file: the file that is asked for; None where none is.
+        file: the file; None without the option.
         option: ``--plot`` or ``--animation``.
         problems: list that the faults are added to: the file cannot be written, or has no suffix that can be drawn.
-        meshes: whether it may be a file of meshes.
+        meshes: whether a file of meshes is accepted.
 
     Raises:
-        PlotUnavailableError: a figure is asked for and matplotlib is not installed.
+        PlotUnavailableError: a figure is requested, and matplotlib is not installed.
     """
     if file is None:
         return
@@ -165,14 +165,14 @@ def check_figure(file: Path | None, option: str, problems: list[Problem], *, mes
 
 
 def check_file(file: Path | None, option: str, suffix: str) -> None:
-    """Refuse a file that cannot be written, or whose suffix promises another format than the one it would have.
+    """Refuse a file that cannot be written, or that has the suffix of another format.
 
-    A file without suffix promises nothing.
+    A file without a suffix is accepted.
 
     Args:
-        file: the file that is asked for; None where none is.
-        option: the option by which it is asked for.
-        suffix: of the only format that is written there, such as ``.json``.
+        file: the file; None without the option.
+        option: the option of the file.
+        suffix: suffix of its format, such as ``.json``.
 
     Raises:
         SceneError: the file cannot be written, or has another suffix.
@@ -189,7 +189,7 @@ def check_file(file: Path | None, option: str, suffix: str) -> None:
 def check_inputs_stay(
     outputs: Mapping[str, Path | None], scene: Path, settings: list[str] | None, *others: Path | None
 ) -> None:
-    """Refuse to write over a file that the command reads, or two results into one; arguments as of :func:`check_files`.
+    """Refuse to overwrite input files, and to write two results into one; arguments of :func:`check_files`.
 
     Raises:
         SceneError: with a problem for each such file.
@@ -208,5 +208,5 @@ def check_inputs_stay(
 
 
 def given_files(*files: Path | None) -> list[Path]:
-    """Files that were asked for, in their order."""
+    """The given files, in their order."""
     return [file for file in files if file is not None]

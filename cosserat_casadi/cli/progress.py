@@ -24,7 +24,7 @@ from cosserat_casadi.cli.signals import StoppedError, remembered_interrupt, take
 from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.numerics.progress import StageProgress
 
-# Only named in a signature: a solve shows how far it is without any module of motions.
+# Only for annotations: a solve needs no module of motions for its progress.
 if TYPE_CHECKING:
     from cosserat_casadi.motion.trajectory import MotionProgress
 
@@ -34,8 +34,8 @@ class SolveDisplay:
     """Callbacks that a solve reports to.
 
     Attributes:
-        show_share: takes the share of the present stage that is done, 0 to 1.
-        show_stage: takes the name of the stage that begins.
+        show_share: function of the finished share of the present stage, 0 to 1.
+        show_stage: function of the name of a new stage.
     """
 
     show_share: Callable[[float], None]
@@ -43,7 +43,7 @@ class SolveDisplay:
 
 
 class RateColumn(ProgressColumn):
-    """How many are done in a second, once that is known."""
+    """Column with the number of finished items per second, once known."""
 
     def render(self, task: Task) -> Text:
         """The rate as text."""
@@ -51,7 +51,7 @@ class RateColumn(ProgressColumn):
 
 
 def progress_bar(*more: ProgressColumn) -> Progress:
-    """A bar on standard error that leaves nothing behind."""
+    """A progress bar on standard error that is removed at the end."""
     columns = (
         SpinnerColumn(),
         TextColumn("{task.description}"),
@@ -84,17 +84,16 @@ def solve_display(command: str) -> Iterator[SolveDisplay]:
 
 @contextmanager
 def motion_display() -> Iterator[Callable[[MotionProgress], None]]:
-    """A bar for a simulation, with the time that is reached, the present step and the time left.
+    """A bar for a simulation, with the present time, the time step and the remaining run time.
 
-    An interrupt that finds no motion yet ends the command; of a motion on its way the simulation hears at its next
-    report.
+    An interrupt before the start of the motion ends the command; during the motion it is raised at the next report.
     """
     with progress_bar(TimeRemainingColumn()) as bar, remembered_interrupt() as raise_interrupt:
         task = bar.add_task("Building the model", total=1.0)
 
         def show_motion(progress: MotionProgress) -> None:
             raise_interrupt()
-            # From the first step on there is a motion to be written.
+            # After the first step there is a partial motion to write.
             if progress.time > 0.0:
                 take_time()
             times = f"t = {progress.time:.4g} of {progress.duration:.4g} s, step {progress.step:.2g} s"
@@ -106,7 +105,7 @@ def motion_display() -> Iterator[Callable[[MotionProgress], None]]:
 
 @contextmanager
 def share_display(description: str) -> Iterator[Callable[[float], None]]:
-    """A bar for what tells the share of it that is done."""
+    """A bar for a task that reports its finished share."""
     with progress_bar() as bar:
         task = bar.add_task(description, total=1.0)
 
@@ -118,7 +117,7 @@ def share_display(description: str) -> Iterator[Callable[[float], None]]:
 
 @contextmanager
 def _stopped_without_files(bar: Progress) -> Iterator[None]:
-    """End the command with a sentence where it is interrupted inside: whoever waits is told that no file changed."""
+    """Context that ends the command after an interrupt, with the sentence that no file changed."""
     try:
         yield
     except KeyboardInterrupt:
@@ -128,13 +127,13 @@ def _stopped_without_files(bar: Progress) -> Iterator[None]:
 
 @contextmanager
 def count_display(description: str, *columns: ProgressColumn) -> Iterator[StageProgress]:
-    """A bar for the stages of a task, one after the other, with more columns.
+    """A bar for the successive stages of a task, with further columns.
 
     An interrupt is raised at the next report.
 
     Args:
-        description: of the first stage.
-        columns: such as the rate, or the time left.
+        description: description of the first stage.
+        columns: further columns, such as the rate or the remaining time.
     """
     with progress_bar(*columns) as bar, remembered_interrupt() as raise_interrupt:
         task = bar.add_task(description, total=None)
@@ -146,7 +145,7 @@ def count_display(description: str, *columns: ProgressColumn) -> Iterator[StageP
             if stage == shown_stage:
                 bar.update(task, completed=done, total=total or None)
             else:
-                # A rate is measured since the last reset: rows of one stage say nothing of the next.
+                # The rate is measured since the last reset, since stages have different rates.
                 bar.reset(task, description=stage, completed=done, total=total or None)
             shown_stage = stage
 

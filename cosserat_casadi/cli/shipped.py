@@ -1,7 +1,7 @@
 """Files that come with the package: examples and pages of the documentation.
 
-In a wheel they lie in the package; in a checkout they are where the repository has them, and setup.py copies them from
-there when a wheel is built.
+In a wheel they are inside the package; in a checkout they are in the repository's folders, from which setup.py copies
+them into wheels.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ class Example:
     """An example that comes with the package.
 
     Attributes:
-        name: its path in the folder of examples, without suffix.
+        name: path in the folder of examples, without suffix.
         file: a scene, a table of a sweep, a program, or a notebook.
         title: one sentence.
-        needs: files of the folder of examples that it reads or speaks of.
+        needs: further files of the folder of examples that it reads or mentions.
     """
 
     name: str

@@ -1,7 +1,7 @@
 """Ctrl-C and SIGTERM: both end a command with a sentence, and with nothing half-written, within a second.
 
-A signal raises KeyboardInterrupt where Python runs. It does not inside a long call of CasADi, and where CasADi has
-called Python the exception is lost: a thread that hears of signals by itself ends the process then.
+In Python code a signal raises KeyboardInterrupt. Inside a long call of CasADi it does not, and in a callback from
+CasADi the exception is lost: then a thread that receives signals too ends the process.
 """
 
 from __future__ import annotations
@@ -21,26 +21,26 @@ from types import TracebackType
 
 
 class StoppedError(Exception):
-    """A command was stopped, and has said so itself."""
+    """A command was stopped, and has printed so."""
 
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 """Signals that stop a command."""
 
 GRACE = 0.7
-"""Time that a command has after a signal to end by itself, s."""
+"""Time limit for a command to end after a signal, s."""
 
 LONG_GRACE = 30.0
-"""Time for a command that writes partial results, such as the beginning of a motion, to end after a signal, s."""
+"""Time limit after a signal for a command that writes partial results, such as a partial motion, s."""
 
 LOOKS = 0.05
-"""Time between two looks at whether the command is over, s."""
+"""Time between checks for the end of the command, s."""
 
 _received: list[int] = []
-"""Signals that have come, in their order."""
+"""Received signals, in their order."""
 
 _temporary_folders: list[str] = []
-"""Folders for temporary files: one at the most."""
+"""Folders for temporary files, at most one."""
 
 _unhurried = threading.Event()
 """Whether the command writes its partial results after a signal."""
@@ -49,26 +49,26 @@ _said = threading.Event()
 """Whether the user has been told that the command was stopped."""
 
 _saying = threading.Lock()
-"""Held by the thread that tells the user: the command itself and the thread that watches may both come to it."""
+"""Lock for the message to the user, which the command and the watching thread may both print."""
 
 
 def install_handlers() -> None:
-    """Turn the signals into KeyboardInterrupt, so that unfinished files are removed on the way out."""
+    """Turn the signals into KeyboardInterrupt, so that unfinished files are removed."""
     for number in SIGNALS:
         signal.signal(number, _interrupt)
     sys.unraisablehook = _report_unraisable
-    # Libraries in C that cannot raise an exception print it by this hook, and go on.
+    # C libraries that cannot raise an exception print it by this hook and continue.
     sys.excepthook = _report_uncaught
 
 
 def end_in_time(sentence: str, exit_codes: Mapping[int, int]) -> None:
-    """End the process where a command has not ended by itself some time after a signal, or at a second one.
+    """End the process if the command does not end within the time limit after a signal, or at a second signal.
 
-    Temporary files lie in one folder from now on, which is removed.
+    From now on temporary files are in one folder, which is removed at the end.
 
     Args:
-        sentence: printed on standard error then.
-        exit_codes: of the process, by the number of the signal.
+        sentence: message on standard error.
+        exit_codes: exit codes of the process, by signal number.
     """
     folder = tempfile.mkdtemp(prefix="cosserat_casadi-")
     _temporary_folders.append(folder)
@@ -78,22 +78,22 @@ def end_in_time(sentence: str, exit_codes: Mapping[int, int]) -> None:
     for end in (told, heard):
         end.setblocking(end is heard)
     signal.set_wakeup_fd(told.fileno(), warn_on_full_buffer=False)
-    # Kept by the thread: the numbers of signals come through it as long as the process lives.
+    # The thread keeps the socket, which receives signal numbers during the life of the process.
     arguments = (told, heard, sentence, exit_codes)
     threading.Thread(target=_watch, args=arguments, name="signals", daemon=True).start()
 
 
 def remove_temporary_files() -> None:
-    """Remove the folder of temporary files, where the process ends without its last rites."""
+    """Remove the folder of temporary files, before the process ends without cleanup."""
     for folder in _temporary_folders:
         shutil.rmtree(folder, ignore_errors=True)
 
 
 def say_once(sentence: str) -> None:
-    """Print a sentence on standard error, unless the command or the thread that watches has printed one before.
+    """Print a sentence on standard error, unless the command or the watching thread has printed one.
 
     Args:
-        sentence: the sentence, which says that the command was stopped.
+        sentence: message that the command was stopped.
     """
     with _saying:
         if _said.is_set():
@@ -105,31 +105,31 @@ def say_once(sentence: str) -> None:
 
 
 def take_time() -> None:
-    """Let the command that runs write its partial results after a signal."""
+    """Give the running command time to write its partial results after a signal."""
     _unhurried.set()
 
 
 def forget_signals() -> None:
-    """Begin anew: a command has not been stopped yet."""
+    """Reset: no signal received."""
     _received.clear()
     _unhurried.clear()
     _said.clear()
 
 
 def remove_handlers() -> None:
-    """Let the signals end the process without a word: the command is done."""
+    """Restore the default handlers after the command."""
     for number in SIGNALS:
         signal.signal(number, signal.SIG_DFL)
     signal.set_wakeup_fd(-1)
 
 
 def was_terminated() -> bool:
-    """Whether SIGTERM was the first signal that has come."""
+    """Whether the first received signal was SIGTERM."""
     return bool(_received) and _received[0] == signal.SIGTERM
 
 
 def was_interrupted() -> bool:
-    """Whether any signal has come."""
+    """Whether any signal was received."""
     return bool(_received)
 
 
@@ -137,8 +137,8 @@ def was_interrupted() -> bool:
 def remembered_interrupt() -> Iterator[Callable[[], None]]:
     """A function that raises KeyboardInterrupt if the user has interrupted since.
 
-    CasADi calls Python to look at its arguments, and takes whatever that raises for a refusal of the argument: an
-    interrupt that falls there is lost. It is remembered, and raised again at the next report of progress.
+    CasADi calls Python to inspect arguments, and takes any exception there as a wrong type: an interrupt at this moment
+    is lost. It is remembered, and raised again at the next report of progress.
     """
     handlers_before = {number: signal.signal(number, _interrupt) for number in SIGNALS}
 
@@ -154,7 +154,7 @@ def remembered_interrupt() -> Iterator[Callable[[], None]]:
 
 
 def _watch(told: socket.socket, heard: socket.socket, sentence: str, exit_codes: Mapping[int, int]) -> None:
-    """End the process some time after the first signal that comes, or at the second."""
+    """End the process at the time limit after the first signal, or at the second one."""
     first = _next_signal(heard)
     began = time.monotonic()
     heard.settimeout(LOOKS)
@@ -171,10 +171,10 @@ def _watch(told: socket.socket, heard: socket.socket, sentence: str, exit_codes:
 
 
 def _next_signal(heard: socket.socket) -> int:
-    """Number of the next signal that stops a command.
+    """Number of the next signal.
 
     Raises:
-        TimeoutError: none has come in the time that the socket has.
+        TimeoutError: no signal within the timeout of the socket.
     """
     while True:
         number = heard.recv(1)[0]
@@ -183,13 +183,13 @@ def _next_signal(heard: socket.socket) -> int:
 
 
 def _report_unraisable(unraisable: sys.UnraisableHookArgs) -> None:
-    """Keep quiet of an interrupt that falls where nothing can be raised: it is remembered."""
+    """Do not print an interrupt that could not be raised: it is remembered."""
     if not isinstance(unraisable.exc_value, KeyboardInterrupt):
         sys.__unraisablehook__(unraisable)
 
 
 def _report_uncaught(kind: type[BaseException], error: BaseException, at: TracebackType | None) -> None:
-    """Keep quiet of an interrupt that a library in C has swallowed: it is remembered."""
+    """Do not print an interrupt lost in a C library: it is remembered."""
     if not issubclass(kind, KeyboardInterrupt):
         sys.__excepthook__(kind, error, at)
 

@@ -1,4 +1,4 @@
-"""Standard output and standard error of a terminal or a pipe that may not know every letter, or not take more."""
+"""Standard output and standard error of terminals and pipes with limited encodings, or closed ones."""
 
 from __future__ import annotations
 
@@ -32,16 +32,16 @@ PLAIN = {
     "≥": ">=",
     "→": "->",
 }
-"""Substitutes for letters that the terminal does not know."""
+"""Substitutes for letters missing in the encoding of the terminal."""
 
 HANDLER = "cosserat_plain"
-"""Name of the error handler that writes substitutes for letters that the terminal does not know."""
+"""Name of the error handler that writes these substitutes."""
 
 
 class Console(console.Console):
-    """A console that shows words as they are, in the colours of their markup.
+    """A console that prints text unchanged apart from markup.
 
-    rich makes an emoji of the ``:b:`` in ``x=a:b:3``, and colours numbers and paths.
+    By default rich turns ``:b:`` in ``x=a:b:3`` into an emoji, and colours numbers and paths.
     """
 
     def __init__(self, *, stderr: bool = False) -> None:
@@ -49,10 +49,10 @@ class Console(console.Console):
 
 
 def prepare_streams() -> None:
-    """Let standard output and standard error take all that a command says.
+    """Make standard output and standard error accept any text.
 
-    Letters that their encoding lacks become plain ones, what standard error cannot take is dropped, and a width of no
-    columns is taken for a pipe's.
+    Letters missing in the encoding become plain ones; text that standard error cannot take is dropped; a width of zero
+    columns is treated like that of a pipe.
     """
     codecs.register_error(HANDLER, _plain_letters)
     _open_missing_streams()
@@ -66,7 +66,7 @@ def prepare_streams() -> None:
 
 
 def binary_output() -> BinaryIO:
-    """Standard output for bytes.
+    """Binary standard output.
 
     Raises:
         OSError: it is closed.
@@ -77,20 +77,20 @@ def binary_output() -> BinaryIO:
 
 
 def _open_missing_streams() -> None:
-    """Keep the numbers of standard streams that are closed: a file that gets one would be written to as a stream."""
+    """Open closed standard streams, so that no other file gets their numbers and their output."""
     for number in range(3):
         try:
             os.fstat(number)
         except OSError:
-            # The lowest free number is taken, which is this one.
+            # The lowest free number is used, which is this one.
             os.open(os.devnull, os.O_RDWR)
 
 
 class _Dropping(io.FileIO):
-    """A file that drops text that it cannot take: how a command ends is said by its exit code too."""
+    """A file that drops text after write errors; the exit code reports the outcome too."""
 
     def write(self, content: Any) -> int:
-        """Write a content, as far as that goes."""
+        """Write a content, as far as possible."""
         with suppress(OSError):
             rest = memoryview(content)
             while len(rest):
@@ -99,25 +99,25 @@ class _Dropping(io.FileIO):
 
 
 def _dropping(stream: io.TextIOWrapper) -> io.TextIOWrapper:
-    """A stream for the same file that forgets what the file cannot take, as where its disk is full."""
+    """A stream for the same file that drops text after write errors, e.g. on a full disk."""
     file = _Dropping(stream.fileno(), "w", closefd=False)
     return io.TextIOWrapper(file, encoding=stream.encoding, errors=stream.errors, write_through=True)
 
 
 def flush_streams() -> None:
-    """Write what standard output still holds.
+    """Flush standard output.
 
     Raises:
-        OSError: it cannot be written, as on a full disk.
+        OSError: it cannot be written, e.g. on a full disk.
     """
     if sys.stdout is not None:
         sys.stdout.flush()
 
 
 def silence_output() -> None:
-    """Drop the rest of standard output: its reader is gone, or its disk full.
+    """Drop the rest of standard output, after its reader has closed it or on a full disk.
 
-    Python would try once more at its end, and print a traceback.
+    Otherwise Python would retry at exit, and print a traceback.
     """
     if sys.stdout is None:
         return
@@ -127,7 +127,7 @@ def silence_output() -> None:
 
 
 def _plain_letters(error: UnicodeError) -> tuple[str, int]:
-    """The handler: plain letters in place of letters that an encoding lacks, and where to go on."""
+    """The error handler: substitutes for letters missing in an encoding, and the position to continue."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
     letters = error.object[error.start : error.end]
@@ -143,7 +143,7 @@ def _plain_letters(error: UnicodeError) -> tuple[str, int]:
 
 
 def _plain_letter(letter: str) -> str:
-    """The substitute for one letter; a question mark where there is none."""
+    """The substitute for one letter, or a question mark."""
     if letter in PLAIN:
         return PLAIN[letter]
     match unicodedata.name(letter, "").split():

@@ -1,10 +1,10 @@
 """A cable of given length, whose tension is unknown: docs/theory.md, section 8.
 
-An elastic cable is longer than given by (T − T₁)(length/EA + 1/k), with T₁ the tension at which it has the length.
+An elastic cable exceeds its given length by (T − T₁)(length/EA + 1/k), with T₁ the tension at which it has that length.
 
-Where the cable may go slack, the smooth complementarity a τ + s − √((a τ)² + s² + ε²) = 0 of tension τ and sag s
-holds both at zero or above and one of them at zero, up to a τ s = ε²/2: A. Fischer, *Optimization* 24 (1992) 269–284,
-with C. Kanzow's smoothing. The softness a of the rod makes a length of the tension, so that the two compare.
+If the cable may go slack, the smooth complementarity a τ + s − √((a τ)² + s² + ε²) = 0 of tension τ and sag s keeps
+both above zero and one of them at zero, up to a τ s = ε²/2: A. Fischer, *Optimization* 24 (1992) 269–284, with C.
+Kanzow's smoothing. The softness a of the rod converts the tension to a length, comparable with the sag.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.cable import Cable
 
 SMOOTHING = 1e-10
-"""ε, relative to the rod's length: at the corner, where both would vanish, a τ and the sag are this small."""
+"""ε, relative to the rod's length: size of a τ and of the sag at the corner, where both would vanish."""
 
 
 @dataclass(frozen=True)
 class Elasticity:
-    """How a cable of given length, and the winch that holds it, stretch: c = length/EA + 1/k by a unit of tension.
+    """Elasticity of a cable of given length and of its winch: extension c = length/EA + 1/k by a unit of tension.
 
     Attributes:
-        by_length: 1/EA, 1/N; zero of a cable that does not stretch.
-        at_base: 1/k of the winch, m/N; zero of a rigid one.
+        by_length: 1/EA, 1/N; zero for an inextensible cable.
+        at_base: 1/k of the winch, m/N; zero for a rigid winch.
         resting: tension at which the cable has the given length, N.
     """
 
@@ -38,7 +38,7 @@ class Elasticity:
 
     @property
     def rigid(self) -> bool:
-        """Whether the cable keeps its length."""
+        """Whether cable and winch are rigid."""
         return is_zero(self.by_length) and is_zero(self.at_base)
 
 
@@ -48,12 +48,12 @@ class CableLength:
 
     Attributes:
         cable: the cable on its routing.
-        elasticity: how it stretches.
-        wanted: its length, 1×1, m.
+        elasticity: elasticity of the cable and its winch.
+        wanted: the given length, 1×1, m.
         tension: the unknown, 1×1, in units of EI/ℓ².
-        slack: whether it may sag.
-        softness: a, the length relative to the rod's that a unit of tension takes from the cable in the unloaded rod.
-        smoothing: ε, 1×1; larger on the way to the scene, where a corner would stop the continuation.
+        slack: whether the cable may go slack.
+        softness: a, shortening of the cable by a unit of tension in the unloaded rod, relative to the rod's length.
+        smoothing: ε, 1×1; larger along the load path, where a corner would stop the continuation.
     """
 
     cable: Cable
@@ -71,12 +71,12 @@ class CableLength:
 
     @cached_property
     def pull(self) -> Matrix:
-        """Derivative of the rod's residual with respect to the tension, n×1: the generalised force of it, over ℓ."""
+        """Derivative of the rod's residual with respect to the tension, n×1: its generalised force over ℓ."""
         return self.cable.pull / self._rod_length
 
     @cached_property
     def sag(self) -> Matrix:
-        """Excess of the wanted length over the length of the cable, relative to the rod's length, 1×1."""
+        """Excess of the given length over the present length of the cable, relative to the rod's length, 1×1."""
         length = self.wanted
         if not self.elasticity.rigid:
             length = length + self._compliance * self._stretching
@@ -84,12 +84,12 @@ class CableLength:
 
     @cached_property
     def residual(self) -> Matrix:
-        """Zero where the cable has its length, or is slack, 1×1."""
+        """Residual, 1×1: zero if the cable has its length, or is slack."""
         return self._results[0]
 
     @cached_property
     def strain_columns(self) -> Matrix:
-        """Derivative of the residual with the strain coordinates, 1×n."""
+        """Derivative of the residual by the strain coordinates, 1×n."""
         by_strain = self.cable.gradient / self._rod_length
         if self.cable.mean_share_gradient is not None and not is_zero(self.elasticity.by_length):
             stretched = self.elasticity.by_length * self.wanted * self._stretching
@@ -98,7 +98,7 @@ class CableLength:
 
     @cached_property
     def tension_column(self) -> Matrix:
-        """Derivative of the residual with the tension, 1×1."""
+        """Derivative of the residual by the tension, 1×1."""
         _, by_sag, by_tension = self._results
         if self.elasticity.rigid:
             return by_tension
@@ -106,12 +106,12 @@ class CableLength:
 
     @property
     def _stretching(self) -> Matrix:
-        """Tension beyond the one at which the cable has the wanted length, 1×1, N."""
+        """Tension above the one at which the cable has the given length, 1×1, N."""
         return self._tension_unit * self.tension - self.elasticity.resting
 
     @property
     def _compliance(self) -> Matrix:
-        """Extension by a unit of tension at the base, 1×1, m/N: where the cable rubs its mean tension stretches it."""
+        """Extension by a unit of tension at the base, 1×1, m/N; with friction the mean tension stretches the cable."""
         share = self.cable.mean_share
         stretched = self.wanted if share is None else self.wanted * share
         return self.elasticity.by_length * stretched + self.elasticity.at_base
@@ -123,7 +123,7 @@ class CableLength:
 
     @cached_property
     def _results(self) -> tuple[Matrix, Matrix, Matrix]:
-        """The residual and its derivatives with sag and tension, 1×1 each."""
+        """The residual and its derivatives by sag and tension, 1×1 each."""
         kernel = pair_kernel(self.slack, self.softness)
         residual, by_sag, by_tension = kernel(self.sag, self.tension, self.smoothing)
         return residual, by_sag, by_tension
@@ -134,9 +134,9 @@ class CableLength:
 
 
 def pair_kernel(slack: bool, softness: float) -> ca.Function:
-    """Sag, tension and smoothing ↦ residual and its derivatives with sag and tension.
+    """Sag, tension and smoothing ↦ residual and its derivatives by sag and tension.
 
-    Of a joint that stops the sag is the way to it, and the tension its push.
+    For a stop of a joint the sag is the distance to the stop, and the tension its push.
     """
     sag = ca.SX.sym("sag")
     tension = ca.SX.sym("tension")

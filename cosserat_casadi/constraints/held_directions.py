@@ -1,7 +1,7 @@
-"""Held directions, P and D of docs/theory.md, section 8, and what remains of them for rods in a plane.
+"""Held directions, P and D of docs/theory.md, section 8, and their reduction for rods in a plane.
 
-A rod that stays in the x–z plane of its base needs to be held in that plane alone; what nothing can move is not held a
-second time, or the equations would depend on each other.
+A rod that stays in the x–z plane of its base is held in that plane alone: holding directions in which it cannot move
+would make the equations dependent.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.rod.properties import RodProperties
 
 FLAT = 1e-9
-"""Sine of an angle, or distance relative to a length, that is put down to rounding."""
+"""Sine of an angle, or distance relative to a length, that may be rounding."""
 
 ALL = np.eye(3)
 IN_PLANE = ALL[:, [0, 2]]
@@ -39,8 +39,8 @@ def across(axis: Sequence[float], rotation: FloatArray) -> FloatArray:
     """Two unit vectors at right angles to an axis, in the axes of the tip, shape (3, 2).
 
     Args:
-        axis: in the axes of what holds the tip, any length but zero.
-        rotation: turns the axes of the tip into those of what holds it, shape (3, 3).
+        axis: axis in the axes of the holder, of any length but zero.
+        rotation: rotation from the axes of the tip into those of the holder, shape (3, 3).
     """
     direction = rotation.T @ np.asarray(axis, dtype=float)
     # The first right singular vector of a row is along it; the others span what is orthogonal to it.
@@ -49,7 +49,7 @@ def across(axis: Sequence[float], rotation: FloatArray) -> FloatArray:
 
 
 def in_plane(held: HeldDirections, normal: FloatArray = NORMAL) -> HeldDirections:
-    """Held directions of a section that nothing takes out of a plane: displacements in it, rotation about its normal.
+    """Held directions of a section that cannot leave a plane: displacements in it, rotation about its normal.
 
     Args:
         held: the directions of a section that moves in space.
@@ -58,7 +58,7 @@ def in_plane(held: HeldDirections, normal: FloatArray = NORMAL) -> HeldDirection
     along_normal = np.outer(normal, normal)
     positions = _basis((ALL - along_normal) @ held.positions)
     rotations = _basis(along_normal @ held.rotations)
-    # All displacements in the plane are those along its axes, whichever way the place has turned.
+    # All displacements in the plane are held along its axes, whichever way the place is turned.
     turn_with_pose = held.turn_with_pose and positions.shape[1] == 1
     if positions.shape[1] == 2:
         positions = IN_PLANE
@@ -68,14 +68,14 @@ def in_plane(held: HeldDirections, normal: FloatArray = NORMAL) -> HeldDirection
 
 
 def upright(held: HeldDirections) -> HeldDirections:
-    """Held directions of a planar rod that keeps its body in the plane too: that body does not tilt out of it."""
+    """Held directions of a planar rod that keeps its body in the plane too, so that the body does not tilt."""
     if np.any(np.abs(IN_PLANE.T @ held.rotations) > FLAT):
         return held
     return replace(held, rotations=np.hstack([IN_PLANE, held.rotations]))
 
 
 def in_any_plane(held: HeldDirections, normal: FloatArray) -> HeldDirections:
-    """Held directions of a body or section that nothing takes out of a plane, whose normal is in their axes."""
+    """Held directions of a body or section that cannot leave a plane, with the normal in their axes."""
     along_normal = np.outer(normal, normal)
     return HeldDirections(_basis((ALL - along_normal) @ held.positions), _basis(along_normal @ held.rotations), True)
 
@@ -88,10 +88,10 @@ def across_plane(held: HeldDirections, normal: FloatArray = NORMAL) -> HeldDirec
 
 
 def keeps_plane(held: HeldDirections, normal: FloatArray = NORMAL) -> bool:
-    """Whether a body that is held so may be held in a plane by something else alone.
+    """Whether a body with these held directions may leave its hold across a plane to another constraint.
 
-    Along the normal, given in the axes of the directions, it does not move, and of its tilts out of the plane both are
-    held or neither.
+    This is so if it cannot move along the normal, given in the axes of the directions, and both tilts out of the plane
+    are held or neither.
     """
     left = normal - held.positions @ (held.positions.T @ normal)
     if np.linalg.norm(left) > FLAT:
@@ -101,18 +101,18 @@ def keeps_plane(held: HeldDirections, normal: FloatArray = NORMAL) -> bool:
 
 
 def confines(held: HeldDirections, normal: FloatArray = NORMAL) -> bool:
-    """Whether a body or section that is held so stays in a plane, along the normal and against tilts."""
+    """Whether a body or section with these held directions stays in a plane, along the normal and against tilts."""
     tilts = _tilts(held, normal)
     return keeps_plane(held, normal) and len(tilts) == 2 and bool(np.all(tilts >= 1 - FLAT))
 
 
 def _tilts(held: HeldDirections, normal: FloatArray) -> FloatArray:
-    """How much of two tilts out of a plane is held, shape (2,) or less."""
+    """Held parts of two tilts out of a plane, shape (2,) or less."""
     return np.asarray(np.linalg.svd(across(normal.tolist(), ALL).T @ held.rotations, compute_uv=False))
 
 
 def _basis(vectors: FloatArray) -> FloatArray:
-    """Orthonormal basis of what vectors span, shape (3, k); the largest component of each vector is positive."""
+    """Orthonormal basis of the span of vectors, shape (3, k); the largest component of each vector is positive."""
     left, sizes, _ = np.linalg.svd(vectors, full_matrices=False)
     span = left[:, sizes > FLAT]
     projector = span @ span.T
@@ -126,7 +126,7 @@ def _basis(vectors: FloatArray) -> FloatArray:
 
 
 def stays_in_plane(rod: RodProperties) -> bool:
-    """Whether nothing takes a rod out of the local x–z plane of its base."""
+    """Whether a rod cannot leave the local x–z plane of its base."""
     # Component 4 of the strain is the shear along y, out of the plane.
     shears_out = not is_zero(rod.intrinsic[4]) or 4 in rod.admitted
     if shears_out:

@@ -1,11 +1,11 @@
 """The coordinate that a joint leaves free: the angle of a hinge, the displacement of a slide.
 
-Where something acts along it, a spring, a damper, friction, a motor or a drive, the joint holds its section in all
-directions at a pose that the coordinate moves. A drive prescribes the coordinate. Else it is an unknown q, whose
-equation is λ + V'(q) = 0 with the multiplier λ along the free direction, V the energy of spring and motor. As an
-unknown it counts turns: no function of the poses alone tells an angle from the same angle a turn further.
+If a spring, a damper, friction, a motor or a drive acts along it, the joint holds its section in all directions at a
+pose that the coordinate moves. A drive prescribes the coordinate. Otherwise it is an unknown q with the equation λ +
+V'(q) = 0, λ the multiplier along the free direction, V the energy of spring and motor. As an unknown it counts turns:
+poses alone do not distinguish an angle from this angle plus a full turn.
 
-A stop is the pair 0 ≤ ρ ⟂ g ≥ 0 of its push ρ, an unknown that adds to that equation, and the way g to it.
+A stop is the pair 0 ≤ ρ ⟂ g ≥ 0 of its push ρ, an unknown that adds to that equation, and the distance g to it.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 
 
 def held_along(coordinate: Coordinate, normal: FloatArray | None) -> HeldDirections:
-    """All directions that a section can move in, the coordinate's last among displacements or rotations.
+    """All directions in which a section can move, the coordinate's last among displacements or rotations.
 
     Args:
-        coordinate: in the axes of the section.
-        normal: of the plane that the section moves in, in its axes, shape (3,); None where it moves in space.
+        coordinate: coordinate in the axes of the section.
+        normal: normal, in section axes, of the plane in which the section moves, shape (3,); None in space.
     """
     axis = coordinate.axis
     if normal is None:
@@ -49,13 +49,13 @@ def moves_in_plane(coordinate: Coordinate, normal: FloatArray) -> bool:
 class JointEffort:
     """Spring, damper, friction and motor of a joint, in N m and rad or in N and m.
 
-    Coulomb's friction F opposes the rate u by F u / √(u² + s²): the whole of it to the share ½ (s/u)² above the slip
-    rate s. A joint that sticks creeps, slower than s until it is close to slipping.
+    Coulomb's friction F opposes the rate u by F u / √(u² + s²), which is F to the share ½ (s/u)² above the slip rate s.
+    A joint that sticks creeps, slower than s until it is close to slipping.
 
     Attributes:
-        stiffness: by unit of the coordinate.
+        stiffness: effort per unit of the coordinate.
         rest: coordinate at which the spring is unloaded.
-        damping: by unit of its rate.
+        damping: effort per unit of its rate.
         friction: effort of a joint that slips.
         slip_rate: rate below which a joint that sticks creeps.
         motor: effort of the motor, 1×1.
@@ -81,7 +81,7 @@ class JointEffort:
         return effort
 
     def resistance_slope(self, rate: Matrix) -> Matrix:
-        """Derivative of the resistance with the rate, 1×1."""
+        """Derivative of the resistance by the rate, 1×1."""
         slope = ca.DM(1, 1) + self.damping
         if not is_zero(self.friction):
             slope = slope + self.friction * self.slip_rate**2 / (rate**2 + self.slip_rate**2) ** 1.5
@@ -100,5 +100,5 @@ class JointEffort:
 
 
 def unit_vector(axis: FloatArray) -> FloatArray:
-    """A vector over its length."""
+    """A vector over its norm."""
     return np.asarray(axis / np.linalg.norm(axis))

@@ -75,7 +75,7 @@ class Revolute(_OnAxis[RevoluteJoint]):
     turns = True
 
     def held(self, record: RevoluteJoint, rotation: FloatArray) -> HeldDirections:
-        """All but the rotation about the axis."""
+        """All directions except the rotation about the axis."""
         return HeldDirections(ALL, across(record.axis, rotation), turn_with_pose=True)
 
 
@@ -88,5 +88,5 @@ class Prismatic(_OnAxis[PrismaticJoint]):
     turns = False
 
     def held(self, record: PrismaticJoint, rotation: FloatArray) -> HeldDirections:
-        """All but the displacement along the axis."""
+        """All directions except the displacement along the axis."""
         return HeldDirections(across(record.axis, rotation), ALL, turn_with_pose=True)

@@ -1,8 +1,8 @@
 """Constraints that hold a section of a rod at a pose in another frame: the world, a body, the base of a carried rod.
 
-A place of a body may stand for the section: the body is what the base of the rod is otherwise.
+A place of a body may replace the section: the body then takes the role of the rod's base.
 
-The kinds of support and joint differ in the directions that they hold, and in nothing else. The residual and the
+The kinds of support and joint differ only in the directions that they hold. The residual and the
 wrench are written once, as small expressions of poses and multipliers; CasADi differentiates them.
 Docs/theory.md, section 8.
 
@@ -28,7 +28,7 @@ from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_prod
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 
 KEPT_KERNELS = 128
-"""Constraints whose kernels are kept for further models."""
+"""Number of constraints whose kernels are kept for further models."""
 
 
 @dataclass(frozen=True)
@@ -38,8 +38,8 @@ class HeldDirections:
     Attributes:
         positions: unit vectors of the held displacements, shape (3, k).
         rotations: unit vectors of the held rotations, shape (3, m).
-        turn_with_pose: whether the vectors are given in the axes of the held pose and turn with it; else they are given
-            in the axes of the rod's base.
+        turn_with_pose: whether the vectors are in the axes of the held pose and turn with it; else they are in the axes
+            of the rod's base.
     """
 
     positions: FloatArray
@@ -53,13 +53,13 @@ class HeldDirections:
 
     @property
     def slides(self) -> bool:
-        """Whether the section may move along the held pose, so that the wrench on it acts where the section is."""
+        """Whether the section may move along the held pose, so that the wrench acts at the section."""
         return self.turn_with_pose and self.positions.shape[1] < 3
 
 
 @dataclass(frozen=True)
 class Coordinate:
-    """A coordinate along which the pose that a section is held to moves.
+    """A coordinate along which the held pose of a section moves.
 
     Attributes:
         axis: unit vector in the axes of the section, shape (3,).
@@ -80,10 +80,10 @@ class Coordinate:
 
 
 class PoseVariations(NamedTuple):
-    """Derivatives with the motions [δθ; δr] of the poses that a constraint reads, each with 6 columns.
+    """Derivatives by the motions [δθ; δr] of the poses in a constraint, each with 6 columns.
 
-    The section moves in the axes of the rod's base, the other two in world axes. The derivative with a coordinate has
-    one column.
+    The section moves in the axes of the rod's base, the other two in world axes. The derivative by a coordinate has one
+    column.
     """
 
     section: Matrix
@@ -93,7 +93,7 @@ class PoseVariations(NamedTuple):
 
 
 class ConstraintPoses(NamedTuple):
-    """The poses that a constraint reads.
+    """The poses in a constraint.
 
     Attributes:
         section: the held section in the rod's base.
@@ -109,7 +109,7 @@ class ConstraintPoses(NamedTuple):
 
     @property
     def stacked(self) -> list[Matrix]:
-        """Positions and quaternions, and the coordinate, as the kernels take them."""
+        """Positions and quaternions, and the coordinate, as arguments of the kernels."""
         parts: list[Matrix] = []
         for pose in (self.section, self.base, self.frame):
             parts += [pose.position, pose.quaternion]
@@ -122,9 +122,9 @@ class HeldPose:
 
     Attributes:
         pose: pose of the section in the other frame.
-        turn: quaternion that takes the directions of :class:`HeldDirections` to the held directions; None where these
-            are the same.
-        coordinate: along which the pose moves; None for a pose that does not.
+        turn: quaternion that takes the directions of :class:`HeldDirections` to the held directions; None if these
+            agree.
+        coordinate: coordinate along which the pose moves; None for a fixed pose.
     """
 
     pose: Pose
@@ -133,17 +133,17 @@ class HeldPose:
 
     @property
     def axes(self) -> Matrix | None:
-        """Rotation that takes the directions of :class:`HeldDirections` to the held ones, 3×3; None without a turn."""
+        """Rotation from the directions of :class:`HeldDirections` to the held directions, 3×3; None without a turn."""
         return None if self.turn is None else quaternion_to_matrix(self.turn)
 
     def in_frame(self, poses: ConstraintPoses) -> Pose:
-        """The pose that the section is held to, in the other frame."""
+        """The held pose of the section in the other frame."""
         if self.coordinate is None or poses.coordinate is None:
             return self.pose
         return self.coordinate.moved(self.pose, poses.coordinate, self.turn)
 
     def seen_from(self, poses: ConstraintPoses) -> Pose:
-        """The pose that the section is held to, in the rod's base."""
+        """The held pose of the section in the rod's base."""
         return poses.base.seen(poses.frame.then(self.in_frame(poses)))
 
 
@@ -154,12 +154,12 @@ class SectionConstraint:
     Attributes:
         length: ℓ of the rod, m.
         unit: EI/ℓ of the rod, J.
-        at: abscissa of the section, a break of the rod's grid; not read of a place of a body.
+        at: abscissa of the section, a break of the rod's grid; ignored for a place of a body.
         held: the directions that are held.
-        pose: pose of the section in the other frame that closes the constraint; expressions where parameters set it.
+        pose: pose of the section in the other frame that closes the constraint; expressions if parameters set it.
         turn: quaternion, 4×1, of the rotation that takes ``held``, in the axes of ``pose``, to the held directions;
-            numbers or expressions; None for the directions ``held`` as they are.
-        coordinate: along which the pose moves; None where it does not.
+            numbers or expressions; None if they agree.
+        coordinate: coordinate along which the pose moves; None for a fixed pose.
     """
 
     length: float
@@ -181,7 +181,7 @@ class SectionConstraint:
         return residual
 
     def residual_variation(self, poses: ConstraintPoses) -> PoseVariations:
-        """Derivative of the residual with the poses, size×6 each."""
+        """Derivative of the residual by the poses, size×6 each."""
         _, *by_poses = self._kernels.residual(*poses.stacked, *self._free_target)
         return PoseVariations(*by_poses)
 
@@ -206,7 +206,7 @@ class SectionConstraint:
         return ca.diagcat(rotation, rotation) @ in_given_axes
 
     def wrench_variation(self, poses: ConstraintPoses, multipliers: Matrix) -> PoseVariations:
-        """Derivative of the wrench on the section with the poses at fixed multipliers, base axes, 6×6 each."""
+        """Derivative of the wrench on the section by the poses at fixed multipliers, base axes, 6×6 each."""
         if not self.held.turn_with_pose:
             zero = ca.DM(6, 6)
             return PoseVariations(zero, zero, zero)
@@ -219,17 +219,17 @@ class SectionConstraint:
         return reaction
 
     def reaction_variation(self, poses: ConstraintPoses, multipliers: Matrix) -> tuple[Matrix, PoseVariations]:
-        """Derivative of the reaction with the multipliers, 6×size, and with the poses, 6×6 each."""
+        """Derivative of the reaction by the multipliers, 6×size, and by the poses, 6×6 each."""
         _, by_multipliers, *by_poses = self._kernels.reaction(*poses.stacked, *self._free_target, multipliers)
         return by_multipliers, PoseVariations(*by_poses)
 
     def on_body(self, poses: ConstraintPoses, multipliers: Matrix) -> Matrix:
-        """Wrench on the body whose place it holds, about the origin of the body, world axes, 6×1."""
+        """Wrench on the body with the held place, about the origin of the body, world axes, 6×1."""
         wrench: Matrix = self._kernels.on_body(*poses.stacked, *self._free_target, multipliers)[0]
         return wrench
 
     def on_body_variation(self, poses: ConstraintPoses, multipliers: Matrix) -> tuple[Matrix, PoseVariations]:
-        """Derivative of that wrench with the multipliers, 6×size, and with the poses, 6×6 each."""
+        """Derivative of the wrench on the body by the multipliers, 6×size, and by the poses, 6×6 each."""
         _, by_multipliers, *by_poses = self._kernels.on_body(*poses.stacked, *self._free_target, multipliers)
         return by_multipliers, PoseVariations(*by_poses)
 
@@ -263,7 +263,7 @@ class SectionConstraint:
         return arguments
 
     def target_symbols(self) -> tuple[HeldPose, list[ca.SX]]:
-        """The target that the kernels are written in, and its symbols."""
+        """The target in the kernels, and its symbols."""
         target = self._given_target
         symbols = []
         if isinstance(self.pose, Pose):
@@ -289,7 +289,7 @@ class SectionConstraint:
             displacement = target.axes.T @ displacement
             turn = target.axes.T @ turn
         along = ca.DM(self.held.positions).T @ displacement / self.length
-        # The vector part of a quaternion is half the rotation that is left, to first order.
+        # The vector part of the quaternion is half of the remaining rotation, to first order.
         about = 2 * ca.DM(self.held.rotations).T @ turn
         return ca.vertcat(along, about)
 
@@ -298,7 +298,7 @@ class SectionConstraint:
         return self._wrench_basis(poses, target) @ multipliers
 
     def reaction_of(self, poses: ConstraintPoses, target: HeldPose, multipliers: Matrix) -> Matrix:
-        """The opposite of the wrench on the section, at the held pose, or at the section where that may slide."""
+        """The opposite of the wrench on the section, at the held pose, or at the section if it may slide."""
         wrench = self.wrench_of(poses, target, multipliers)
         moment = poses.base.rotation @ wrench[:3]
         force = poses.base.rotation @ wrench[3:]
@@ -320,10 +320,10 @@ class SectionConstraint:
 
 @dataclass(frozen=True)
 class _Kernels:
-    """The kernels of all constraints that are closed alike.
+    """The kernels of all constraints with one target.
 
     Attributes:
-        law: numbers that the kernels hold.
+        law: constants of the kernels.
         constraint: one of these constraints.
     """
 
@@ -345,17 +345,17 @@ class _Kernels:
 
     @cached_property
     def wrench(self) -> ca.Function:
-        """Poses and multipliers ↦ wrench on the section and its variations with the poses."""
+        """Poses and multipliers ↦ wrench on the section and its variations by the poses."""
         return self._of_multipliers("constraint_wrench", SectionConstraint.wrench_of, with_multipliers=False)
 
     @cached_property
     def reaction(self) -> ca.Function:
-        """Poses and multipliers ↦ reaction and its derivatives with the multipliers and the poses."""
+        """Poses and multipliers ↦ reaction and its derivatives by the multipliers and the poses."""
         return self._of_multipliers("constraint_reaction", SectionConstraint.reaction_of, with_multipliers=True)
 
     @cached_property
     def on_body(self) -> ca.Function:
-        """Poses and multipliers ↦ wrench on a body and its derivatives with the multipliers and the poses."""
+        """Poses and multipliers ↦ wrench on a body and its derivatives by the multipliers and the poses."""
         return self._of_multipliers("constraint_on_body", SectionConstraint.on_body_of, with_multipliers=True)
 
     def _of_multipliers(
@@ -365,7 +365,7 @@ class _Kernels:
         *,
         with_multipliers: bool,
     ) -> ca.Function:
-        """Poses and multipliers ↦ a wrench and its derivatives, with the multipliers first if asked for."""
+        """Poses and multipliers ↦ a wrench and its derivatives, by the multipliers first if requested."""
         poses, motions = self._symbols
         target, target_symbols = self.constraint.target_symbols()
         multipliers = ca.SX.sym("multipliers", self.constraint.size)
@@ -377,10 +377,10 @@ class _Kernels:
 
 @lru_cache(maxsize=KEPT_KERNELS)
 def _shared(kernels: _Kernels) -> _Kernels:
-    """The kernels with the same law that were asked for first.
+    """The kept kernels with equal constants.
 
-    A search for a discretisation builds many models of one scene, and to write the kernels takes longer than to
-    evaluate them.
+    A search for a discretisation builds many models of one scene, and writing the kernels takes longer than evaluating
+    them.
     """
     return kernels
 
@@ -413,10 +413,10 @@ def _moved(poses: ConstraintPoses, motions: list[ca.SX]) -> ConstraintPoses:
 
 
 def _at_rest(expression: Matrix, variables: list[ca.SX], motions: list[ca.SX]) -> list[Matrix]:
-    """Derivatives of an expression with some variables where all motions are zero."""
+    """Derivatives of an expression by some variables at zero motions."""
     all_motions = ca.vertcat(*motions)
     rest = ca.DM.zeros(all_motions.numel())
     derivatives = [ca.jacobian(expression, variable) for variable in variables]
     at_rest = ca.substitute(derivatives, [all_motions], [rest])
-    # Entries that are zero at rest would be instructions otherwise.
+    # Otherwise entries that are zero at rest would be instructions.
     return [ca.sparsify(derivative) for derivative in at_rest]

@@ -1,8 +1,8 @@
 """Members that hold the tip of a rod: a support in the world, or a joint at a body.
 
-A kind differs from others in the directions that it holds, and in nothing else. A member is one class: it gives
-:meth:`TipHolder.held`, and everything follows from these directions: multipliers, wrenches, what remains of them where
-rods stay in a plane, whether the tip slides, and how a figure marks it.
+A kind differs from others only in the directions that it holds. A member is one class with :meth:`TipHolder.held`, and
+everything follows from these directions: multipliers, wrenches, their reduction for rods in a plane, whether the tip
+slides, and its mark in figures.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class TipHolder(Kind, ABC, Generic[RecordType]):
         """
 
     def axis(self, record: RecordType) -> Sequence[Scalar] | None:
-        """Axis, in the world or in the body, that the held directions turn with where a parameter moves it."""
+        """Axis, in the world or in the body, with which the held directions turn if a parameter moves it."""
         return getattr(record, "axis", None)
 
     def directions(self, record: RecordType) -> HeldDirections:
@@ -60,7 +60,7 @@ class Joint(TipHolder[RecordType]):
     kinds = Kinds(JOINTS)
 
     def coordinate(self, record: RecordType, rotation: FloatArray) -> Coordinate | None:
-        """Coordinate that the joint leaves free and that something acts along; None where nothing does.
+        """Free coordinate of the joint along which something acts; None if nothing does.
 
         Args:
             record: the record of the scene.
@@ -74,7 +74,7 @@ class Joint(TipHolder[RecordType]):
 
 
 def place_of(record: JointRecord | SupportRecord | CarriedBody) -> NumericPose:
-    """Pose of the tip in the world or in the body; without rotation where its record leaves that free."""
+    """Pose of the tip in the world or in the body; without rotation if its record leaves the rotation free."""
     orientation: Any = record.orientation
     if orientation is None:
         orientation = IDENTITY.quaternion

@@ -5,7 +5,7 @@ import gymnasium
 from cosserat_casadi.environments.reach import ReachEnvironment
 
 REACH = "cosserat_casadi/Reach-v0"
-"""Name under which ``gymnasium.make`` knows the environment once this package is imported."""
+"""Name of the environment for ``gymnasium.make`` after an import of this package."""
 
 gymnasium.register(id=REACH, entry_point="cosserat_casadi.environments.reach:ReachEnvironment")
 

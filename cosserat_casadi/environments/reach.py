@@ -1,4 +1,4 @@
-"""A moving robot that is to bring a tip to a target and keep it there: an environment of Gymnasium.
+"""Environment of Gymnasium: a moving robot has to bring a tip to a target and keep it there.
 
 Its state moves by the step in C. gymnasium is an extra.
 """
@@ -35,7 +35,7 @@ from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.scene.records import HashedTable
 
 DRAWS = 20
-"""Random inputs that are tried for a target before it counts as out of reach."""
+"""Number of random inputs that are tried for a target."""
 
 LARGEST = float(np.finfo(np.float64).max)
 """Bound of the observations: any finite number."""
@@ -45,14 +45,14 @@ Observation = npt.NDArray[np.float64]
 
 @dataclass
 class _Episode:
-    """Where an episode stands.
+    """State of an episode.
 
     Attributes:
         state: state of the motion.
         inputs: stacked inputs.
-        inputs_rate: rates with which the inputs move by now, units per second.
-        aimed: inputs that the last action wants.
-        target: where the tip is to be, m, shape (3,).
+        inputs_rate: present rates of the inputs, units per second.
+        aimed: inputs of the last action.
+        target: target position of the tip, m, shape (3,).
         memory: memory of the steps in C.
         periods: number of periods that have passed.
     """
@@ -69,17 +69,17 @@ class _Episode:
 class ReachEnvironment(gymnasium.Env[Observation, Observation]):  # type: ignore[misc]
     """Bring the tip of a rod to a target by the inputs that the scene bounds.
 
-    An action says where those inputs are to be, from −1 at the lower bound to 1 at the upper one. Tensions and other
-    loads move there linearly in a control period. The rate of a base or a length does not jump: it changes linearly, to
-    what would have led from the action before to this one in the period. At its end the base or the length is half way
-    between the two, and it is never beyond its bounds.
+    An action gives the wanted values of these inputs, from −1 at the lower bound to 1 at the upper one. Tensions and
+    other loads move there linearly in a control period. The rate of a base or a length does not jump: it changes
+    linearly, to the rate that would lead from the action before to this one in a period. At the end of the period the
+    base or the length is half way between the two, and it never exceeds its bounds.
 
     An observation stacks position and velocity of the tip (m, m/s), the inputs in the same shares as actions, the last
     actions of bases and lengths, and the target (m). The reward is minus the distance to the target over the length of
-    the rod. An episode is truncated at its duration, and terminated where a step cannot be computed: ``info["status"]``
-    is the sentence that says why, ``info["distance"]`` the distance in m.
+    the rod. An episode is truncated at its duration, and terminated if a step cannot be computed: ``info["status"]`` is
+    the sentence that says why, ``info["distance"]`` the distance in m.
 
-    Targets are tips of equilibria at random inputs within the bounds, whose stability is not asked for;
+    Targets are tips of equilibria, stable or not, at random inputs within the bounds;
     ``options={"target": …}`` of :meth:`reset` names one.
 
     Modes and nodes are chosen for these ranges, unless the scene fixes them. The model is built and compiled: seconds
@@ -88,19 +88,19 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):  # type: ignore
     Args:
         scene: a scene, or the path of its file, with a range in ``[[bounds]]`` for every input that acts. Its
             parameters have the values of the scene.
-        rod: whose tip moves; the first rod by default.
-        period: between two actions, s.
+        rod: name of the rod with the moving tip; the first rod by default.
+        period: time between two actions, s.
         step: longest step of the integrator, s.
-        duration: of an episode, s.
+        duration: duration of an episode, s.
 
     Attributes:
         rod: name of the rod whose tip moves.
         model: the model of the scene in motion.
         library: its compiled folder.
-        period: between two actions, s.
+        period: time between two actions, s.
         dt: length of a step of the integrator, s.
         error_estimate: the largest estimated error of an equilibrium within the bounds, over the length of the rod;
-            None where the scene fixes its modes. What modes and steps leave in motion is not estimated.
+            None if the scene fixes its modes. Errors of the motion are not estimated.
 
     Raises:
         SceneError: the scene is faulty, has no such rod, or an input that acts has no range.
@@ -137,7 +137,7 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):  # type: ignore
         self._periods = int(np.ceil(duration / period - 1e-9))
         actions = len(self._acting.indices)
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (actions,), dtype=np.float64)
-        # What is seen is finite, and has no bounds that are known beforehand.
+        # Observations are finite, but have no bounds that are known beforehand.
         seen = 9 + actions + int(self._late.sum())
         self.observation_space = gymnasium.spaces.Box(-LARGEST, LARGEST, (seen,), dtype=np.float64)
         self._episode = self._begun(self.model.pack(), np.zeros(3))
@@ -148,7 +148,7 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):  # type: ignore
         """Begin at rest, in the equilibrium of the scene's own inputs, with a new target.
 
         Args:
-            seed: of the targets.
+            seed: seed of the targets.
             options: ``target``: a position in m, shape (3,), instead of a random one.
 
         Raises:
@@ -163,13 +163,13 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):  # type: ignore
         return self._observation(tip), self._info(tip, "")
 
     def step(self, action: Observation) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        """Move the inputs to where an action says, over one control period.
+        """Move the inputs towards the values of an action, over one control period.
 
         Args:
-            action: shares of the ranges, −1 to 1, shape (k,); what lies outside counts as the bound.
+            action: shares of the ranges, −1 to 1, shape (k,); values beyond count as the bounds.
 
         Raises:
-            ValueError: the action is not as many finite numbers as there are inputs that act.
+            ValueError: the action does not have one finite number for each moved input.
         """
         shares = np.clip(_finite(action, len(self._acting.indices), "action"), -1.0, 1.0)
         episode = self._episode
@@ -185,7 +185,7 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):  # type: ignore
         episode.state = taken.state
         episode.inputs = inputs
         episode.inputs_rate = rates
-        # It is evaluated once: observation, reward and info share it.
+        # Evaluated once for observation, reward and info.
         tip = self._tip()
         reward = -self._distance(tip) / self._length
         if not taken.done:
@@ -214,11 +214,11 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):  # type: ignore
         raise RuntimeError(f"none of {DRAWS} random inputs within the bounds has an equilibrium: narrow the bounds")
 
     def _from_share(self, share: FloatArray) -> FloatArray:
-        """Values of the inputs that act, from shares −1 to 1 of their ranges."""
+        """Values of the moved inputs, from shares −1 to 1 of their ranges."""
         return self._acting.lower + (share + 1.0) / 2.0 * (self._acting.upper - self._acting.lower)
 
     def _share(self, inputs: FloatArray) -> FloatArray:
-        """Shares −1 to 1 that the inputs that act are at in their ranges."""
+        """Shares −1 to 1 of the moved inputs in their ranges."""
         ranges = self._acting.upper - self._acting.lower
         return 2.0 * (inputs[self._acting.indices] - self._acting.lower) / ranges - 1.0
 
@@ -244,7 +244,7 @@ def _chosen(scene: Scene) -> tuple[Mapping[str, Discretisation], float | None]:
     """The discretisation of every rod, and the largest estimated error of an equilibrium within the bounds."""
     if scene.accuracy.fixed:
         return discretise(scene), None
-    # What no action moves keeps its value.
+    # Inputs that no action moves keep their values.
     acting = dict.fromkeys(bound.input for bound in scene.bounds)
     ranges = {name: pairs for name, pairs in scene.ranges.items() if name in acting}
     choice = choose(scene.model_copy(update={"inputs": tuple(acting), "ranges": HashedTable(ranges)}))
@@ -283,7 +283,7 @@ def _seen_function(model: Model, rod: str) -> ca.Function:
 
 
 def _acting_inputs(model: Model) -> DecisionVariables:
-    """The inputs that an action moves: what the scene bounds, but for entries that it holds at one value.
+    """The inputs that an action moves: entries with bounds in the scene, unless both bounds are equal.
 
     Raises:
         SceneError: an input has no range; an action is a share of it.
@@ -301,7 +301,7 @@ def _acting_inputs(model: Model) -> DecisionVariables:
 
 
 def _moving_entries(model: Model) -> npt.NDArray[np.bool_]:
-    """Which entries of the stacked inputs move rods or prescribe a length."""
+    """Whether each entry of the stacked inputs moves rods or prescribes a length."""
     moves = np.zeros(model.inputs.size, dtype=bool)
     for entry, entries in model.inputs:
         moves[entries] = entry.declared.moves

@@ -1,10 +1,10 @@
 """The error of an answer at any inputs, from modes and intervals that its model lacks (docs/theory.md, section 10).
 
-High modes are held by elasticity above all. So each missing mode gives way by what the balance of a richer model lacks
-in it, as stiffness alone would have it; the Jacobian of the answer tells how its own unknowns follow. A few such sweeps
-are Newton's corrections with the richer model, and neither a richer Jacobian nor a richer solve is needed. Where sweeps
-do not settle, Newton's steps on the richer model are taken; where these do not settle either, the error is not known,
-and counts as the whole length.
+Elasticity dominates the balance of high modes. So the stiffness alone, applied to the residual of a richer model, gives
+the step of each missing mode; the Jacobian of the answer tells how its own unknowns follow. A few such sweeps converge
+to Newton's correction with the richer model, without a richer Jacobian or a richer solve. If sweeps do not settle,
+Newton's steps on the richer model follow; if these do not settle either, the error is unknown, and counts as the whole
+length.
 """
 
 from __future__ import annotations
@@ -32,25 +32,25 @@ from cosserat_casadi.scene import Scene
 Answer = TypeVar("Answer", bound=Equilibrium[Any])
 
 SAFETY = 1.2
-"""Factor on the change that a richer model makes, which is not exact either."""
+"""Safety factor on the change by a richer model, which is not exact either."""
 
 FIRST_LOOK = 2.0
-"""Factor on the change that a first sweep makes, which the second may show to be two thirds of the error."""
+"""Safety factor on the change by a first sweep, which may be only two thirds of the error."""
 
 MOST_SWEEPS = 4
 """Sweeps after which Newton's method on the richer model takes over."""
 
 MOST_STEPS = 6
-"""Newton's steps on the richer model after which the error is not known."""
+"""Newton's steps on the richer model after which the error counts as unknown."""
 
 SETTLED = 0.2
-"""Relative difference of two changes, one sweep or step after the other, below which the last is believed."""
+"""Relative difference of the changes by two successive sweeps or steps below which the last change is believed."""
 
 SETTLED_IN_LAYERS = 0.1
-"""Relative difference of two changes that is believed where layers push: their stiffness changes with each."""
+"""SETTLED for scenes with contact layers, whose stiffness changes with each sweep."""
 
 CONTRACTING = 0.5
-"""Largest ratio of two steps of the missing modes, one after the other, with which a correction is believed."""
+"""Largest ratio of two successive steps of the missing modes with which a correction is believed."""
 
 SHORTEST = 1e-10
 """Length of a step of the missing modes, as strain times length, below which it is rounding: ten times Newton's."""
@@ -59,10 +59,10 @@ SLOWEST = 0.7
 """Largest ratio of errors, or of the coefficients of a strain, with and without two more modes that is believed."""
 
 UNKNOWN = 1.0
-"""Error of an answer that no correction settles near: the whole length."""
+"""Error of an answer whose corrections do not settle: the whole length."""
 
 NO_WRENCH = 1e-6
-"""Wrench, in units of EI/ℓ, below which one counts as none, and errors are relative to it."""
+"""Least wrench, in units of EI/ℓ, to which the error of a wrench is relative."""
 
 SMALL_PART = 0.01
 """Share of a whole wrench, in units of EI/ℓ, below which the error of its force or moment is relative to that share."""
@@ -73,10 +73,11 @@ class AnswerError:
     """Estimated errors of an answer.
 
     Attributes:
-        watched: of the poses of tips and bodies, as distance over the length and as angle in rad, and of the lengths of
-            cables over the length; of held rods at sections between the ends too.
-        shape: of the poses of all sections, between the nodes too; no smaller than the error of the watched poses.
-        wrench: of the forces and moments of bases, supports and joints, and of tensions that are unknown, relative.
+        watched: error of the poses of tips and bodies, as distance over the length and as angle in rad, and of the
+            lengths of cables over the length; for held rods at sections between the ends too.
+        shape: error of the poses of all sections, between the nodes too; no smaller than the error of the watched
+            poses.
+        wrench: relative error of the forces and moments of bases, supports and joints, and of unknown tensions.
     """
 
     watched: float
@@ -92,11 +93,11 @@ class Correction:
         known: change of the unknowns of the answer, shape (n,).
         missing: coordinates of the missing modes, shape (missing,).
         change: change of the watched poses and lengths.
-        contracts: whether the missing modes moved by at most half of their step before, and would have before the
-            unknowns of the answer followed. A wall that they run into is not in their stiffness: then they bounce, and
-            watched poses may settle by chance.
-        rests: whether the missing modes moved by a small part of all that they moved.
-        settled: whether they rest, and the correction before it gave about the same change.
+        contracts: whether the step of the missing modes is at most half of the step before, and was so before the
+            unknowns of the answer followed. Modes bounce off a wall, which is not in their stiffness: poses then settle
+            by chance.
+        rests: whether the last step of the missing modes is a small part of their total change.
+        settled: whether the missing modes rest, and the correction before this one had about the same change.
     """
 
     known: FloatArray
@@ -109,12 +110,12 @@ class Correction:
 
 @dataclass(frozen=True)
 class RicherBalance:
-    """The balance of the richer model at a corrected answer.
+    """Steps, residual and poses of the richer model at a corrected answer.
 
     Attributes:
         step: elastic step of the unknowns of the answer, shape (n,).
         missing_step: elastic step of the coordinates of the missing modes, shape (missing,).
-        residual: in the unknowns, shape (n,).
+        residual: residual in the unknowns of the answer, shape (n,).
         poses: watched poses and lengths.
     """
 
@@ -125,9 +126,9 @@ class RicherBalance:
 
 
 def with_error_estimate(solution: Solution) -> Solution:
-    """A solution with the estimates of its errors, told where they are above the tolerance.
+    """A solution with estimates of its errors; its message warns of an error above the tolerance.
 
-    A solution that is no equilibrium stays as it is, and so does one that has an estimate: it was made with more care.
+    A solution that is not an equilibrium is returned unchanged, and so is one with an estimate, which is a better one.
     """
     if not solution.converged or solution.error_estimate is not None:
         return solution
@@ -135,7 +136,7 @@ def with_error_estimate(solution: Solution) -> Solution:
 
 
 def estimated(solution: Solution) -> Solution:
-    """An equilibrium with the estimates of its errors, its message as it is."""
+    """An equilibrium with the estimates of its errors and an unchanged message."""
     error = answer_error(solution)
     return replace(
         solution,
@@ -146,7 +147,7 @@ def estimated(solution: Solution) -> Solution:
 
 
 def with_notes(solution: Answer) -> Answer:
-    """A solution whose message tells an estimated error above the tolerance, and friction that is left out."""
+    """A solution with notes in its message on an error above the tolerance and on friction that is left out."""
     return replace(solution, message=solution.message + _tolerance_note(solution) + _friction_note(solution))
 
 
@@ -166,12 +167,12 @@ FRICTION_IN_MOTION = " Friction of exact contact acts in motion alone, and is le
 
 
 def left_out_friction(scene: Scene) -> str:
-    """A sentence on friction of joints, which acts in motion alone; empty where there is none."""
+    """A sentence on friction of joints, which acts in motion alone; empty without such friction."""
     return FRICTION_OF_JOINTS if any(joint.rubs for joint in scene.joints) else ""
 
 
 def left_out_on_paths(scene: Scene) -> str:
-    """Sentences on friction that paths leave out, of joints, bodies and disks; empty where there is none."""
+    """Sentences on friction of joints, bodies and disks, which paths leave out; empty without such friction."""
     if scene.rubs_exactly:
         return FRICTION_IN_MOTION + left_out_friction(scene)
     of_bodies = any(obstacle.rubs and (obstacle.bodies or obstacle.disks) for obstacle in scene.obstacles)
@@ -208,7 +209,7 @@ def answer_error(solution: Solution) -> AnswerError:
     """Estimate the error of an equilibrium of its model.
 
     Args:
-        solution: a converged one, at any inputs and parameters.
+        solution: a converged solution, at any inputs and parameters.
     """
     believed, correction = believed_correction(solution)
     if not believed:
@@ -217,7 +218,7 @@ def answer_error(solution: Solution) -> AnswerError:
     watched = safety * (correction.change + _rest_of_series(solution, correction)) + ROUNDING
     corrected = _richer_answer(solution, correction)
     shape_change = _shape_change(solution, corrected)
-    # Wrenches of clamps follow strains, which wave with the shape.
+    # Wrenches of clamps follow the strains, which oscillate with the shape.
     with_rest = safety * (1.0 + _share_beyond(solution, correction, corrected, shape_change))
     shape = with_rest * shape_change + ROUNDING
     wrench = with_rest * _wrench_change(solution, corrected, correction) + ROUNDING
@@ -228,7 +229,7 @@ def watched_error(solution: Solution) -> float:
     """Estimate the error of the watched poses and lengths alone, at less cost.
 
     Args:
-        solution: a converged one, at any inputs and parameters.
+        solution: a converged solution, at any inputs and parameters.
     """
     believed, correction = believed_correction(solution)
     if not believed:
@@ -237,19 +238,19 @@ def watched_error(solution: Solution) -> float:
 
 
 def _safety_of(solution: Solution, correction: Correction) -> float:
-    """Factor on the change that a believed correction makes."""
+    """Safety factor on the change by a believed correction."""
     return safety_for(solution.model) if correction.settled else FIRST_LOOK
 
 
 def safety_for(model: Model) -> float:
-    """Factor on the change that a richer model makes, with what further modes would change where layers press rods."""
+    """Safety factor on the change by a richer model, with the change by further modes where layers press rods."""
     return SAFETY * (1.0 + model.discrete.share_of_more_modes(ADDED_MODES_IN_LAYERS))
 
 
 def believed_correction(solution: Solution) -> tuple[bool, Correction]:
-    """Whether a correction is believed, and the last one: by sweeps, else by Newton's steps on the richer model.
+    """Whether a correction is believed, and the last correction: by sweeps, else by Newton's steps on the richer model.
 
-    None is believed of modes that are blind to what loads roll up.
+    No correction is believed if the missing modes cannot resolve the waves in elements that loads roll up.
     """
     settles, correction = _settled_correction(solution)
     if not settles:
@@ -259,11 +260,11 @@ def believed_correction(solution: Solution) -> tuple[bool, Correction]:
 
 
 def _settled_correction(solution: Solution) -> tuple[bool, Correction]:
-    """Whether corrections settle, and the last one."""
-    # A look that leaves the answer within its tolerance need not be repeated.
+    """Whether corrections settle, and the last correction."""
+    # A first sweep that leaves the answer within its tolerance need not be repeated.
     enough = enough_for(solution.model)
     settled = settled_for(solution.model)
-    # Far from an answer the equations overflow: what comes out then is not settled.
+    # Far from an answer the equations overflow: such corrections are not settled.
     with np.errstate(all="ignore"):
         for corrections in (_sweeps(solution), _newton_steps(solution)):
             before = np.inf
@@ -280,14 +281,14 @@ def _settled_correction(solution: Solution) -> tuple[bool, Correction]:
 
 
 def settled_for(model: Model) -> float:
-    """Relative difference of two changes, one after the other, below which the last is believed."""
+    """Relative difference of two successive changes below which the last change is believed."""
     return SETTLED_IN_LAYERS if model.discrete.has_layers else SETTLED
 
 
 def enough_for(model: Model) -> float:
     """Change below which the first sweep is believed: the estimate that it gives is within the tolerance.
 
-    Layers are so far from linear that the first sweep may tell half of the change: there no first sweep is believed.
+    Layers are so nonlinear that the first sweep may show only half of the change: with them it is not believed.
     """
     if model.discrete.has_layers:
         return ROUNDING
@@ -295,7 +296,7 @@ def enough_for(model: Model) -> float:
 
 
 def _sweeps(solution: Solution) -> Iterator[Correction]:
-    """Corrections by elastic steps of the missing modes, which the unknowns of the answer follow.
+    """Corrections by elastic steps of the missing modes, each followed by a step of the unknowns of the answer.
 
     They end with the first step of the missing modes that does not contract.
     """
@@ -315,8 +316,8 @@ def _sweeps(solution: Solution) -> Iterator[Correction]:
         balance = richer_balance(solution, known, missing)
         following = _following(solution, inverse, balance.residual)
         known = known + following
-        # What the missing modes would do next tells of the first step whether they bounce; the next step may be short
-        # by chance then, and is not believed either.
+        # The next elastic step tells whether the missing modes bounce after their first step. The step after a bounce
+        # may be short by chance, and is not believed either.
         bounces = before is None and not _contracts(missing_step, balance.missing_step)
         change = change_with_following(solution, balance, following)
         rests = _rests(solution, missing, missing_step)
@@ -326,19 +327,19 @@ def _sweeps(solution: Solution) -> Iterator[Correction]:
 
 
 def inverse_jacobian(solution: Solution) -> FloatArray:
-    """Inverse of the Jacobian at an answer, shape (n, n); what symmetry leaves neutral does not move."""
+    """Pseudo-inverse of the Jacobian at an answer, shape (n, n); variations that symmetry makes neutral do not move."""
     return regular_inverse(solution.model.path_jacobian(solution.x, solution.inputs, 1.0).full())
 
 
 def _following(solution: Solution, inverse: FloatArray, residual: FloatArray) -> FloatArray:
-    """How the unknowns of an answer follow missing modes: by two steps, the second from the answer's own equations.
+    """Step by which the unknowns of an answer follow missing modes; its second part uses the answer's equations.
 
-    In C the Jacobian is that which the solver has left, and the second step makes up for its age.
+    In C the solver leaves an older Jacobian, and the second part makes up for its age.
 
     Args:
         solution: the answer.
         inverse: inverse of its Jacobian.
-        residual: residual that the missing modes leave.
+        residual: residual of the richer model in these unknowns, shape (n,).
     """
     first = -inverse @ residual
     left = residual + column(solution.model.path_residual(solution.x + first, solution.inputs, 1.0))
@@ -346,7 +347,7 @@ def _following(solution: Solution, inverse: FloatArray, residual: FloatArray) ->
 
 
 def _contracts(before: FloatArray, step: FloatArray) -> bool:
-    """Whether a step of the missing modes is at most half as long as the one before it, or rounding."""
+    """Whether a step of the missing modes is at most half as long as the step before it, or rounding."""
     longest = max(CONTRACTING * float(np.linalg.norm(before)), SHORTEST)
     return bool(np.linalg.norm(step) <= longest)
 
@@ -358,7 +359,7 @@ def _rests(solution: Solution, missing: FloatArray, step: FloatArray) -> bool:
 
 
 def richer_balance(solution: Solution, known: FloatArray, missing: FloatArray) -> RicherBalance:
-    """The balance of the richer model at an answer with a correction of its unknowns, and missing coordinates."""
+    """Steps, residual and poses of the richer model at an answer with corrected unknowns and missing coordinates."""
     model = solution.model
     balance = column(model.richer_balance(solution.x, known, missing, solution.inputs))
     ends = np.cumsum([model.size, len(missing), model.size])
@@ -372,14 +373,14 @@ def _watched_numbers(solution: Solution, poses: FloatArray) -> WatchedNumbers:
 
 
 def watched_at(solution: Solution, x: FloatArray) -> WatchedNumbers:
-    """Watched poses and lengths at some unknowns of the answer's model."""
+    """Watched poses and lengths at unknowns x of the answer's model."""
     return _watched_numbers(solution, column(solution.model.watched(x, solution.inputs)))
 
 
 def change_with_following(solution: Solution, balance: RicherBalance, following: FloatArray) -> float:
-    """Largest change of a watched pose or length by a correction whose last part is a step of the unknowns.
+    """Largest change of a watched pose or length by a correction that ends with a step of the unknowns.
 
-    What the step moves is taken on the answer's own modes and grid: the difference to richer ones is of second order.
+    The last step is evaluated on the answer's own modes and grid: the difference to richer ones is of second order.
     """
     before = watched_at(solution, solution.x)
     after = watched_at(solution, solution.x + following)
@@ -480,7 +481,7 @@ def _wrench_change(solution: Solution, corrected: Solution, correction: Correcti
     """Largest relative change of a wrench: of the bases of rods, and of multipliers and tensions among the unknowns."""
     changes = [0.0]
     discrete = solution.model.discrete
-    # What Newton has left of the balance, a wrench that is none has too.
+    # The residual that Newton's method has left is also an error of wrenches that are zero.
     left = solution.residual_norm * (1 + float(np.linalg.norm(solution.x)))
     for _, entries in discrete.unknowns.of_kind(BlockKind.MULTIPLIER, BlockKind.TENSION, BlockKind.STOP):
         changes.append(_relative_change(solution.x[entries], correction.known[entries], left))
@@ -488,7 +489,7 @@ def _wrench_change(solution: Solution, corrected: Solution, correction: Correcti
         moment, force = _base_wrench_in_units(solution, rod)
         new_moment, new_force = _base_wrench_in_units(corrected, rod)
         whole = float(np.linalg.norm([*moment, *force]))
-        # Next to a large force a small moment is not known to all of its digits, and the other way round.
+        # A small moment beside a large force is not accurate to all of its digits, and vice versa.
         least = max(NO_WRENCH, SMALL_PART * whole)
         changes.append(_relative_change(moment, new_moment - moment, left, least))
         changes.append(_relative_change(force, new_force - force, left, least))
@@ -504,6 +505,6 @@ def _base_wrench_in_units(solution: Solution, rod: DiscreteRod) -> tuple[FloatAr
 
 
 def _relative_change(values: FloatArray, difference: FloatArray, left: float, least: float = NO_WRENCH) -> float:
-    """Size of a difference and of the residual, over the size of the values, or over the least size that counts."""
+    """Norm of a difference plus the residual, over the norm of the values or the least norm that counts."""
     size = max(float(np.linalg.norm(values)), least)
     return (float(np.linalg.norm(difference)) + left) / size

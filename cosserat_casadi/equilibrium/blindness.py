@@ -1,9 +1,9 @@
-"""Turns that modes are blind to: an element that loads roll up carries waves of strain that few modes do not see.
+"""Turns that modes cannot resolve: an element that loads roll up has waves of strain that few modes miss.
 
 A force of fixed direction goes round in the frame of a section that turns. Over an element that turns by T the strain
-oscillates with it, and Legendre coefficients of such a wave are small up to a degree of about T/2. The modes that an
-answer lacks tell its error where the richer model has these degrees. Where it lacks them, and its modes do carry
-something, the error of the answer is not known. See docs/theory.md, section 10.
+oscillates with it, and Legendre coefficients of such a wave are small up to a degree of about T/2. The missing modes
+show the error of an answer if the richer model has these degrees. If it lacks them, and its missing modes are not zero,
+the error of the answer is unknown. See docs/theory.md, section 10.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from cosserat_casadi.model.discrete_scene import DiscreteScene, Richer
 from cosserat_casadi.model.required_modes import unloaded_turns
 
 WHOLE_TURN = 2 * np.pi
-"""Turn of an element, rad, within which there is no whole wave to miss."""
+"""Turn of an element, rad, up to which it has no whole wave that modes could miss."""
 
 BEYOND = 3
-"""Modes beyond T/2 from which on a richer model sees waves of an element that turns by T."""
+"""Modes beyond T/2 with which a richer model resolves the waves of an element that turns by T."""
 
 UNSEEN = 0.1
 """Strain in missing modes, over the tolerance, below which no wave matters; curvatures times the length."""
@@ -33,10 +33,10 @@ Indices = npt.NDArray[np.int64]
 
 @dataclass(frozen=True)
 class TurnedElements:
-    """Elements of a scene, rod after rod: how far unknowns turn each, and how many modes the richer model has there.
+    """Elements of a scene, rod after rod, with their turns by unknowns and the modes of the richer model.
 
     Attributes:
-        richer: the scene with modes added, beside the scene whose answers are judged.
+        richer: the scene with modes added, and the scene of the answers.
     """
 
     richer: Richer
@@ -50,12 +50,12 @@ class TurnedElements:
 
     @cached_property
     def of_unknowns(self) -> Indices:
-        """Element that each unknown turns, shape (n,); −1 of unknowns that turn none."""
+        """Index of the element that each unknown turns, shape (n,); −1 for unknowns that turn none."""
         return np.where(self.turns > 0, _elements(self.richer.coarse), -1)
 
     @cached_property
     def turns(self) -> FloatArray:
-        """Root mean square of the turn of its element by a unit of each unknown, shape (n,), rad; or 0."""
+        """Root mean square of the turn of its element by a unit of each unknown, shape (n,), rad; 0 without one."""
         turns = np.zeros(self.richer.coarse.size)
         for name, rod in self.richer.coarse.nominal.rods.items():
             first = self.richer.coarse.unknowns.strain(name).start
@@ -74,12 +74,12 @@ class TurnedElements:
 
     @cached_property
     def of_missing(self) -> Indices:
-        """Element of each missing coordinate, shape (missing,)."""
+        """Index of the element of each missing coordinate, shape (missing,)."""
         return _elements(self.richer.discrete)[~self.richer.known]
 
     @cached_property
     def modes_of_missing(self) -> Indices:
-        """Modes that the richer model has of the strain of each missing coordinate, shape (missing,)."""
+        """Number of modes in the richer model for the strain of each missing coordinate, shape (missing,)."""
         discrete = self.richer.discrete
         modes = np.zeros(discrete.size, dtype=np.int64)
         for name, rod in discrete.rods.items():
@@ -89,7 +89,7 @@ class TurnedElements:
         return modes[~self.richer.known]
 
     def hide_waves(self, x: FloatArray, missing: FloatArray) -> bool:
-        """Whether an element turns so far that waves along it do not show in missing modes, which are not empty.
+        """Whether an element turns so far that the missing modes, which are not zero, cannot show the waves along it.
 
         Args:
             x: unknowns of the answer, shape (n,).
@@ -98,7 +98,7 @@ class TurnedElements:
         tolerance = self.richer.coarse.scene.accuracy.tolerance
         for element, unloaded in enumerate(self.unloaded):
             own = self.of_unknowns == element
-            # No turn is more than the unloaded turn and the root mean square of the turn that loads add.
+            # The turn is bounded by the unloaded turn plus the root mean square turn by loads.
             turn = unloaded + float(np.linalg.norm(self.turns[own] * x[own]))
             blind = (self.of_missing == element) & (self.modes_of_missing < turn / 2 + BEYOND)
             if turn > WHOLE_TURN and np.linalg.norm(missing[blind]) > UNSEEN * tolerance:
@@ -107,7 +107,7 @@ class TurnedElements:
 
 
 def _elements(discrete: DiscreteScene) -> Indices:
-    """Element of each strain coordinate, in a row over all rods, shape (n,); −1 of other unknowns."""
+    """Index of the element of each strain coordinate, counted over all rods, shape (n,); −1 for other unknowns."""
     elements = np.full(discrete.size, -1)
     before = 0
     for name, rod in discrete.rods.items():

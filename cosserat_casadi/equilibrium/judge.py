@@ -1,4 +1,4 @@
-"""A solution from where a method stopped: one test of residual, resolution and stability for all methods.
+"""Judgement of the point where a method stopped: one test of residual, resolution and stability for all methods.
 
 See docs/theory.md, section 9 for residual and stability, section 10 for resolution.
 """
@@ -28,13 +28,13 @@ from cosserat_casadi.numerics.newton import NewtonResult, NewtonSettings, length
 from cosserat_casadi.numerics.outcome import Outcome
 
 MAX_DISTANCE = 0.5
-"""Most that a correction may move strains and poses of frames (2-norm) and still count as on the same branch."""
+"""Largest change of strains and poses of frames (2-norm) by a correction that counts as on the same branch."""
 
 ASIDE = 0.05
-"""Way along a neutral variation on which an equilibrium alike is looked for (2-norm of the unknowns)."""
+"""Step along a neutral variation after which another equilibrium is sought (2-norm of the unknowns)."""
 
 ASIDE_STEPS = 24
-"""Newton steps that this may take: a rod that lies on a stiff obstacle takes 15 to turn on it."""
+"""Most Newton steps of this search: a rod that lies on a stiff obstacle takes 15 to turn on it."""
 
 
 def judge(
@@ -46,14 +46,14 @@ def judge(
     load_factor: float,
     tolerance: float,
 ) -> Solution:
-    """The solution that a method's end amounts to: its residual is computed again, the method is not believed.
+    """Judge the end of a method as a solution; the residual is computed anew, whatever the method reports.
 
     Args:
         model: the solved model.
         inputs: stacked inputs, shape (model.inputs.size,).
         x: where the method stopped, shape (model.size,).
-        outcome: how the method says that it ended.
-        iterations: Newton steps that it took.
+        outcome: outcome that the method reports.
+        iterations: number of its Newton steps.
         load_factor: share of the loads that it reached.
         tolerance: bound on the relative norm of the residual.
     """
@@ -86,7 +86,7 @@ def judge(
 
 
 def gap_left(model: Model, inputs: FloatArray, x: FloatArray) -> str:
-    """The widest gap between rods and what joints tie them to, as a sentence; empty where nothing is tied."""
+    """A sentence on the widest gap between rods and the other sides of their joints; empty without joints."""
     discrete = model.discrete
     closing = [placed for placed in discrete.constraints if placed.closes_assembly]
     if not closing or not np.all(np.isfinite(x)):
@@ -97,7 +97,7 @@ def gap_left(model: Model, inputs: FloatArray, x: FloatArray) -> str:
         constraint_residual = residual[discrete.multipliers(placed)]
         displacements = placed.constraint.held.positions.shape[1]
         gaps.append(length_of(constraint_residual[:displacements]))
-    # Gaps are relative to the length of the rod; the widest tells where to look.
+    # Gaps are relative to the length of the rod; the widest one shows where the problem is.
     worst = int(np.argmax(gaps))
     share = gaps[worst]
     placed = closing[worst]
@@ -108,7 +108,7 @@ def gap_left(model: Model, inputs: FloatArray, x: FloatArray) -> str:
 def _verdict(
     model: Model, x: FloatArray, inputs: FloatArray, outcome: Outcome, norm: float, tolerance: float
 ) -> Outcome:
-    """How a solve at the full load has ended."""
+    """Outcome and sentence of a solve at the full load."""
     if not np.isfinite(norm):
         return Outcome.NOT_FINITE
     if norm <= tolerance:
@@ -117,14 +117,14 @@ def _verdict(
         if resolution_index <= 1.0:
             return Outcome.CONVERGED
         return Outcome.UNRESOLVED
-    # The method took for an equilibrium what is none.
+    # The method has reported an equilibrium that is none.
     if outcome is Outcome.CONVERGED:
         return Outcome.MAX_ITERATIONS
     return outcome
 
 
 def _with_stability(solution: Solution) -> Solution:
-    """An equilibrium with the verdict on its stability, where its loads have a potential."""
+    """An equilibrium with the verdict on its stability, if its loads have a potential."""
     model = solution.model
     if not model.has_potential(solution.inputs):
         return solution
@@ -135,7 +135,7 @@ def _with_stability(solution: Solution) -> Solution:
     if stability.neutral:
         smallest_first = np.argsort(np.abs(eigenvalues))
         neutral = admissible[:, smallest_first[: stability.zero]]
-        # Each of them leads to equilibria alike, or just away from this one.
+        # Each zero eigenvalue belongs to a family of equilibria, or to a limit of stability.
         critical = not all(_is_alike_beside(solution, jacobian, variation) for variation in neutral.T)
     return replace(
         solution,
@@ -146,7 +146,7 @@ def _with_stability(solution: Solution) -> Solution:
 
 
 def stability_note(stability: Stability, critical: bool) -> str:
-    """A sentence for an equilibrium in which some variation costs no energy, or releases it; else empty."""
+    """A sentence for an equilibrium with a variation that costs no energy, or releases some; else empty."""
     if critical:
         return " It is critical: some variation costs no energy to second order; a slight change may unsettle it."
     if stability.neutral:
@@ -155,26 +155,26 @@ def stability_note(stability: Stability, critical: bool) -> str:
         return ""
     if stability.negative == 1:
         return " It is unstable: a variation releases energy."
-    # The variations of a model are some of those of the rod.
+    # The variations of a model are a subset of the variations of the rod.
     return f" It is unstable: at least {stability.negative} independent variations release energy."
 
 
 def _is_alike_beside(solution: Solution, jacobian: FloatArray, variation: FloatArray) -> bool:
-    """Whether an equilibrium alike lies a little way along a variation, shape (n,)."""
+    """Whether another equilibrium of a family lies a small step along a variation, shape (n,)."""
     model = solution.model
     inputs = solution.inputs
     allowed = variations(model)
     start = solution.x.copy()
     start[allowed.free] += ASIDE * variation
-    # In a rod that is held tight they are large: Newton must not have to turn them after the strains.
+    # Multipliers of a tightly held rod are large: they turn along, so that Newton need not turn them afterwards.
     start[allowed.held] += ASIDE * _multipliers_along(jacobian, allowed, variation)
     full_load = input_path(model, start, inputs, inputs)
     few_steps = NewtonSettings(iterations=ASIDE_STEPS)
     beside = newton(full_load.at(1.0), start, few_steps)
     if beside.outcome is not Outcome.CONVERGED:
         return False
-    # Newton may fall back to where it came from, or on to elsewhere: neither tells of this variation. Multipliers turn
-    # along and do not count.
+    # Newton may return to the start, or go elsewhere: neither says anything on this variation. Multipliers turn along
+    # and do not count.
     moved = beside.x - solution.x
     distance = length_of(moved[allowed.free])
     if not ASIDE / 2 <= distance <= 2 * ASIDE:
@@ -184,7 +184,7 @@ def _is_alike_beside(solution: Solution, jacobian: FloatArray, variation: FloatA
 
 
 def _multipliers_along(jacobian: FloatArray, allowed: ConstrainedVariations, variation: FloatArray) -> FloatArray:
-    """Rates of the multipliers, shape (m,), with which a variation that costs no energy leaves all in balance."""
+    """Rates of the multipliers, shape (m,), that keep the balance along a variation that costs no energy."""
     forces = jacobian[np.ix_(allowed.free, allowed.free)] @ variation
     by_multipliers = jacobian[np.ix_(allowed.free, allowed.held)]
     rates, *_ = np.linalg.lstsq(by_multipliers, -forces, rcond=None)
@@ -201,14 +201,14 @@ def correct(model: Model, inputs: FloatArray, start: FloatArray, settings: Newto
         settings: limits.
 
     Returns:
-        the solve; None where it does not stay near, so that it may have met another branch.
+        the solve; None if it does not stay near the start and may be on another branch.
     """
     full_load = input_path(model, start, inputs, inputs)
     corrected = newton(full_load.at(1.0), start, settings)
     if corrected.outcome is not Outcome.CONVERGED or corrected.damped:
         return None
-    # Newton converges from afar too, but then to any equilibrium. Multipliers and tensions may jump where a stiff rod
-    # moves by a hair: they tell nothing of the branch.
+    # Newton converges from far away too, but then to any equilibrium. Multipliers and tensions may jump while a stiff
+    # rod hardly moves: they do not identify the branch.
     moved = corrected.x - start
     distance = length_of(moved[model.discrete.unknowns.differential])
     if distance > MAX_DISTANCE:

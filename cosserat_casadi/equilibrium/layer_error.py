@@ -1,9 +1,9 @@
-"""How far an answer in smooth contact is from one whose contacts have no width (docs/smooth-contact.md).
+"""The distance of an answer in smooth contact from the answer with zero widths (docs/smooth-contact.md).
 
-Layers push by a law F(g/w) of the gap over the width. Thinner ones with the same law, the stiffness growing as 1/w, let
-a rod that is pressed alike have a gap that is less in proportion: to first order the answer moves in proportion to the
-width. So its derivative with the logarithm of all widths is how far it is from the answer of no width. It follows from
-the equations at the answer, dx = −J⁻¹ ∂r/∂(log w) by the implicit function theorem, without a solve.
+Layers push by a law F(g/w) of the gap over the width. With thinner layers and a stiffness in proportion to 1/w, the gap
+under the same force is smaller in proportion: to first order the answer moves in proportion to the width. So its
+derivative by the logarithm of all widths is its distance from the answer with zero widths. It follows from the
+equations at the answer, dx = −J⁻¹ ∂r/∂(log w) by the implicit function theorem, without a solve.
 """
 
 from __future__ import annotations
@@ -18,18 +18,17 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import kept_with
 
 THINNER = 1e-3
-"""Share by which widths are changed for a difference of residuals, whose second order is as small."""
+"""Relative change of the widths for a difference of residuals; its error of second order is as small."""
 
 WAY = 1e-3
-"""Share of the change of the unknowns at which poses are compared: all of it may bend rods far."""
+"""Share of the change of the unknowns at which poses are compared: the whole change may bend rods far."""
 
 
 def layer_error(solution: Solution) -> float | None:
-    """Estimated change of the watched poses and lengths to contacts without widths; None without smooth contact.
+    """Estimated change of the watched poses and lengths to zero widths of contact; None without smooth contact.
 
     Args:
-        solution: what a solve ended with. Without an equilibrium, and where friction remembers a path, there is no
-            estimate.
+        solution: the end of a solve. There is no estimate without an equilibrium, or if friction remembers a path.
 
     Returns:
         distance over the length or angle in rad, whichever is largest; None without an estimate.

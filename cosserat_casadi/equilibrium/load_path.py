@@ -20,13 +20,13 @@ from cosserat_casadi.numerics.broyden import Jacobian, solved
 from cosserat_casadi.numerics.continuation import ContinuationSettings, Path
 
 FIRST_STEP = 0.25
-"""Longest first step where floating frames move: the compliance has fallen to (3/4)³ then."""
+"""Longest first step of an assembly with floating frames: the compliance falls to (3/4)³ in it."""
 
 
 def continuation_limits(model: SystemFunctions) -> ContinuationSettings:
-    """Limits of a continuation: beside smooth obstacles its steps are so short that sections go nearly straight.
+    """Limits of a continuation: beside smooth obstacles steps are so short that sections move nearly straight.
 
-    Beside thin ones its points are exact to a share of their layers.
+    Beside thin obstacles its points are exact to a share of the layers' widths.
     """
     limits = ContinuationSettings()
     scene = model.scene
@@ -35,7 +35,7 @@ def continuation_limits(model: SystemFunctions) -> ContinuationSettings:
 
 
 def load_path(model: Model, inputs: FloatArray, p: FloatArray | None = None) -> Path:
-    """The path from the unloaded scene to the scene, all loads growing together.
+    """The path from the unloaded scene to the scene, along which all loads grow together.
 
     Args:
         model: what to solve.
@@ -62,8 +62,8 @@ def load_path(model: Model, inputs: FloatArray, p: FloatArray | None = None) -> 
         dg_dt = path_rate(x, *given, load_factor, no_change, load_factor_rate)
         return column(dg_dt)
 
-    # The same as a function of the inputs, Model.path_tangent, takes as long to write as many a solve. Where the
-    # unloaded stiffness is singular, the path starts by Newton's steps.
+    # Model.path_tangent, the tangent as a function of the inputs, takes as long to write as many a solve. If the
+    # unloaded stiffness is singular, the path starts with Newton's steps.
     unloaded = model.unloaded()
     stiffness = path_jacobian(unloaded, *given, 0.0).full()
     tangent = solved(stiffness, -rate(unloaded, 0.0))
@@ -81,7 +81,7 @@ def load_path(model: Model, inputs: FloatArray, p: FloatArray | None = None) -> 
 
 
 def backwards(path: Path, end: FloatArray) -> Path:
-    """A path from an equilibrium at its end, t = 1, to its start."""
+    """The reverse of a path, from an equilibrium at its end, t = 1, to its start."""
     return replace(
         path,
         residual=lambda x, t: path.residual(x, 1.0 - t),
@@ -106,7 +106,7 @@ def input_path(
         start: unknowns at or near the equilibrium at t = 0, shape (model.size,).
         before: stacked inputs at t = 0, shape (model.inputs.size,).
         after: stacked inputs at t = 1, shape (model.inputs.size,).
-        parameters: of a model that has them, at t = 0 and 1, shape (model.parameters.size,) each.
+        parameters: parameters at t = 0 and 1, shape (model.parameters.size,) each; None without parameters.
     """
     change = after - before
     parameter_change = None if parameters is None else parameters[1] - parameters[0]
@@ -138,20 +138,20 @@ def input_path(
 
 
 def between(before: FloatArray, after: FloatArray, t: float) -> FloatArray:
-    """Values on the straight line between two, exact at both ends, however far apart they are."""
+    """Values on the straight line between two values, exact at both ends, however far apart these are."""
     left = (1.0 - t) * before
     return left + t * after
 
 
 def first_step(model: Model) -> float:
-    """Longest first step of the load path: where rods need not fit, the compliance (1 − t)³ is no straight line."""
+    """Longest first step of the load path: the compliance (1 − t)³ of assemblies is far from linear."""
     if model.discrete.frames and not model.discrete.closed_unloaded:
         return FIRST_STEP
     return 1.0
 
 
 def _solvable(model: SystemFunctions, jacobian: ca.DM) -> Jacobian:
-    """A Jacobian as it is solved with: sparse where joints make an assembly, dense where rods are alone."""
+    """A Jacobian in the form for a solve: sparse for an assembly, dense for single rods."""
     if model.is_assembly:
         return jacobian
     return np.asarray(jacobian.full())
@@ -160,7 +160,7 @@ def _solvable(model: SystemFunctions, jacobian: ca.DM) -> Jacobian:
 def column(vector: ca.DM) -> FloatArray:
     """Convert a CasADi vector to an array, shape (n,)."""
     if not vector.shape[0]:
-        # CasADi may give an empty vector no column either.
+        # CasADi may give an empty vector zero columns too.
         return np.zeros(0)
     array = vector.full()
     return np.asarray(array[:, 0])

@@ -1,8 +1,8 @@
-"""Kinematic locking: modes on which constraints leave no motion that a load could cause (docs/theory.md, section 10).
+"""Kinematic locking: modes for which constraints leave no motion that a load could cause (docs/theory.md, section 10).
 
 Counting degrees of freedom against constraints is not enough: a platform on six legs of three bending modes each has
 eighteen degrees of freedom more than constraints, and all of them leave the platform where it is. So the compliance of
-each load, how far the least push of it moves the watched poses, is set beside that on a model with modes added.
+each load, the motion of the watched poses by a small load, is compared with the compliance of a model with modes added.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.numerics.neutral import regular_inverse
 
 LOCKED = 0.01
-"""Share of the compliance on more modes below which a load meets a locked model."""
+"""Share of the compliance on more modes below which the model counts as locked against a load."""
 
 NONE = 1e-6
-"""Compliance, relative to the largest one of the same input, that counts as none: more modes do not move either."""
+"""Compliance, relative to the largest of the same input, that counts as zero, as it may be on more modes too."""
 
 STEP = 1e-5
-"""Largest change of an unknown, in its unit, by which compliance is measured."""
+"""Largest change of an unknown, in its unit, at which compliance is measured."""
 
 
 def degrees_of_freedom(model: Model) -> int | None:
@@ -36,22 +36,22 @@ def degrees_of_freedom(model: Model) -> int | None:
     constraints = unknowns.count(BlockKind.MULTIPLIER, BlockKind.TENSION)
     if not constraints:
         return None
-    # The quaternion of a frame has a number more than its rotation has degrees of freedom.
+    # The quaternion of a frame has one number more than its rotation has degrees of freedom.
     frames = sum(min(block.size, 6) for block, _ in unknowns.of_kind(BlockKind.POSE))
     return unknowns.count(BlockKind.STRAIN, BlockKind.COORDINATE) + frames - constraints
 
 
 def has_freedom(model: Model) -> bool:
-    """Whether there are more degrees of freedom than constraints: without, a model is locked, whatever acts."""
+    """Whether there are more degrees of freedom than constraints: otherwise the model is locked under every load."""
     count = degrees_of_freedom(model)
     return count is None or count > 0
 
 
 def locked_inputs(solution: Solution) -> tuple[str, ...]:
-    """Names of the free inputs that move nothing on the modes of a solution, and would on more; lengths are none.
+    """Names of the inputs, lengths excepted, that move nothing on the modes of a solution, but would on more modes.
 
     Args:
-        solution: a converged one.
+        solution: a converged solution.
     """
     model = solution.model
     if degrees_of_freedom(model) is None:
@@ -69,7 +69,7 @@ def locked_inputs(solution: Solution) -> tuple[str, ...]:
 
 
 def _compliances(model: Model, x: FloatArray, inputs: FloatArray) -> Iterator[tuple[str, FloatArray]]:
-    """Motion of the watched poses per unit of each entry of every input but lengths, by the input's name."""
+    """Motion of the watched poses per unit of each entry of every input, by name; lengths are left out."""
     inverse = regular_inverse(model.path_jacobian(x, inputs, 1.0).full())
     responses = -inverse @ residual_by_inputs(model, x, inputs)
     for entry, span in model.inputs:
@@ -86,7 +86,7 @@ def residual_by_inputs(model: Model, x: FloatArray, inputs: FloatArray) -> Float
 
 
 def motion(model: Model, x: FloatArray, inputs: FloatArray, step: FloatArray) -> float:
-    """How far a step of the unknowns moves the watched poses, to first order: over the length, or in quaternions."""
+    """Motion of the watched poses by a step of the unknowns, to first order: over the length, or in quaternions."""
     share = STEP / max(float(np.abs(step).max(initial=0.0)), STEP)
     change = column(model.watched(x + share * step, inputs)) - column(model.watched(x, inputs))
     return float(np.abs(change).max(initial=0.0)) / share
@@ -96,11 +96,11 @@ NOT_KNOWN = (
     "Whether constraints lock the modes that the scene fixes is not known: no equilibrium was found at the scene's own "
     "inputs, and an equilibrium tells."
 )
-"""Sentence where there is no equilibrium at which to look."""
+"""Sentence without an equilibrium at which locking could be tested."""
 
 
 def locking_sentence(locked: Sequence[str]) -> str:
-    """A sentence for modes that leave these inputs no motion; empty without such inputs."""
+    """A sentence for inputs that move nothing on these modes; empty without such inputs."""
     if not locked:
         return ""
     return (
@@ -110,9 +110,9 @@ def locking_sentence(locked: Sequence[str]) -> str:
 
 
 def may_be_locked(model: Model) -> bool:
-    """Whether constraints meet modes that the scene fixes: modes that were chosen are free to move.
+    """Whether the scene has constraints and fixed modes: modes chosen for the tolerance are not locked.
 
-    False in exact contact too, whose forces are inputs of another model for every arrangement.
+    False in exact contact too, where forces are inputs of another model for every arrangement.
     """
     scene = model.scene
     if scene.touches_exactly or not scene.accuracy.fixed_by_hand:
@@ -121,13 +121,13 @@ def may_be_locked(model: Model) -> bool:
 
 
 def locking_note(solution: Solution) -> str:
-    """The sentence on locking; empty where no equilibrium was found."""
+    """The sentence on locking; empty without an equilibrium."""
     if not solution.converged or not may_be_locked(solution.model):
         return ""
     return locking_sentence(locked_inputs(solution))
 
 
 def with_locking_note(solution: Solution) -> Solution:
-    """A solution whose message tells where modes that the scene fixes are locked."""
+    """A solution with a note in its message if modes that the scene fixes are locked."""
     note = locking_note(solution)
     return replace(solution, message=f"{solution.message} {note}") if note else solution

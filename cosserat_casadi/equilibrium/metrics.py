@@ -1,4 +1,4 @@
-"""How two solutions of one scene compare, and how far the rods of one turn."""
+"""Distances between two solutions of one scene, and turns of the rods of a solution."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from cosserat_casadi.model.watched import SAMPLES, watched_cables, watched_secti
 from cosserat_casadi.rod.strain import DiscreteRod
 
 SAFETY = 2.0
-"""Factor on the distance to a finer solution whose own error is not known."""
+"""Safety factor on the distance from a finer solution with an unknown error."""
 
 ROUNDING = 2e-14
 """Floor of every estimate."""
@@ -29,14 +29,14 @@ def with_estimate(
     fine_error: float = 0.0,
     fine_shape_error: float = 0.0,
 ) -> Solution:
-    """A solution with the error that a finer one of the same scene and inputs gives it.
+    """A solution with its error estimated by a finer solution of the same scene and inputs.
 
     Args:
         coarse: the solution.
-        fine: the finer one.
+        fine: the finer solution.
         factor: factor on the distance of their poses and cables.
-        fine_error: error of the finer one, added.
-        fine_shape_error: error of the finer one's shape, added to the error of the whole shape.
+        fine_error: error of the finer solution, which is added.
+        fine_shape_error: error of the finer solution's shape, which is added to the error of the whole shape.
     """
     tip_distance = pose_distance(coarse, fine)
     watched_distance = max(tip_distance, cable_distance(coarse, fine))
@@ -57,8 +57,8 @@ def pose_distance(first: Solution, second: Solution, X: FloatArray | None = None
 
     Args:
         first: a solution.
-        second: another of the same scene.
-        X: abscissae to compare, shape (k,); by default the sections that the tolerance binds.
+        second: another solution of the scene.
+        X: abscissae of the compared sections, shape (k,); by default the watched sections.
     """
     distances = [0.0]
     for name in first.model.discrete.rods:
@@ -98,11 +98,11 @@ def largest_turn(solution: Solution) -> float:
 
 
 def prolong(solution: Solution, model: Model) -> FloatArray:
-    """Unknowns of another model of the same scene: the coefficients that exist, zeros for the rest.
+    """Unknowns of another model of the scene: coefficients that both have are kept, others are zero.
 
     Args:
         solution: a solution of some model.
-        model: the other model, finer more often than not, with the same elements.
+        model: the other model, usually a finer one, with the same elements.
 
     Returns:
         the unknowns, shape (model.size,).

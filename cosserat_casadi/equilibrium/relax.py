@@ -1,4 +1,4 @@
-"""A stable equilibrium where growing the load leads to none: the rod descends in energy to a minimum.
+"""A stable equilibrium where the load path ends at an unstable one: the rod descends in energy to a minimum.
 
 A free rod is released where the load path ended, off its saddle. A held rod is pulled in to its supports by springs
 that grow from limp to rigid, the loads growing along, and relaxes anew at every stage: at a bifurcation it leaves for
@@ -28,14 +28,14 @@ SPRINGS = tuple(float(k) for k in 4.0 ** np.arange(-1, 16))
 """Stiffnesses of the springs for supports, stage by stage: EI/ℓ³ for a force, EI/ℓ for a moment."""
 
 STIFF = 4.0**9
-"""Stiffness of the springs from which on Newton may close the supports; a rod that is drawn tight asks for more.
+"""Stiffness of the springs from which Newton may close the supports; a tightly drawn rod needs more.
 """
 
 SIDES = (1.0, -1.0)
-"""Sides on which a saddle is left, one try after the other."""
+"""Sides on which a try leaves a saddle, one after the other."""
 
 RANDOM_TRIES = 4
-"""Further tries, each from a start off the saddle in a random combination of its unstable variations."""
+"""Number of further tries, each from the saddle plus a random combination of its unstable variations."""
 
 OFF = 0.3
 """Length of a perturbation off a saddle (2-norm of the strain coordinates)."""
@@ -48,12 +48,12 @@ def relaxed(solution: Solution, settings: NewtonSettings, progress: Progress | N
     """Find a stable equilibrium of the same model and inputs.
 
     Args:
-        solution: where the load path ended: an unstable equilibrium, or the last one on the way.
+        solution: the end of the load path: an unstable equilibrium, or the last equilibrium on the path.
         settings: limits of the final correction.
         progress: receives the share of the tries that is done.
 
     Returns:
-        the equilibrium; None where no try leads to one.
+        the equilibrium; None if no try leads to one.
     """
     tries = len(SIDES) + RANDOM_TRIES
     for k, (start, side) in enumerate(_tries(solution)):
@@ -67,7 +67,7 @@ def relaxed(solution: Solution, settings: NewtonSettings, progress: Progress | N
 
 
 def can_relax(model: Model) -> bool:
-    """Whether a model's energy is a function of strains alone: no frames move, no cable has a length to keep."""
+    """Whether a model's energy depends on strains alone: it has no floating frames and no cables of given length."""
     discrete = model.discrete
     return not discrete.is_assembly and not discrete.frames and not discrete.cables
 
@@ -75,10 +75,10 @@ def can_relax(model: Model) -> bool:
 def _tries(solution: Solution) -> Iterator[tuple[FloatArray, float]]:
     """Strain coordinates to start from, shape (n,), and the side, +1 or −1, on which a saddle is left.
 
-    Both sides from where the path ended, then from beside it.
+    Tries begin on both sides of the end of the path, then beside it.
     """
     model = solution.model
-    # A held rod begins without its springs, where only its intrinsic shape is known.
+    # A held rod begins without its springs, at its intrinsic shape.
     unknowns = solution.x
     if model.discrete.constraints:
         unknowns = model.unloaded()
@@ -90,7 +90,7 @@ def _tries(solution: Solution) -> Iterator[tuple[FloatArray, float]]:
     eigenvalues, admissible = admissible_spectrum(jacobian, variations(model))
     if not admissible.size:
         return
-    # Where the path stalled before an instability the lowest variation leads off it.
+    # If the path stalled just before an instability, the variation of the lowest eigenvalue leads off it.
     count = max(1, int(np.sum(eigenvalues < 0.0)))
     unstable = admissible[:, :count]
     # Seeded, so that a scene relaxes to the same equilibrium every time.
@@ -103,9 +103,9 @@ def _tries(solution: Solution) -> Iterator[tuple[FloatArray, float]]:
 
 
 def _descended(solution: Solution, start: FloatArray, side: float) -> Iterator[FloatArray]:
-    """Unknowns at the minima that a try leads to: one of a free rod, which relaxes at the full load.
+    """Unknowns at the minima that a try leads to. A free rod relaxes at the full load, to one minimum.
 
-    Of a held rod, which relaxes at every stage of its springs, at the stiff ones, each nearer to the supports.
+    A held rod relaxes at every stage of its springs; minima of stiff stages come nearer to the supports.
     """
     model = solution.model
     if not model.discrete.constraints:
@@ -120,16 +120,16 @@ def _descended(solution: Solution, start: FloatArray, side: float) -> Iterator[F
         minimum = descend(energy_at(model, solution.inputs, load_factor), q, side, DescentSettings())
         if minimum is None:
             return
-        # The next stage begins where this one has ended: the springs pull the rod in without a jump.
+        # The next stage begins at the end of this one: the springs pull the rod in without a jump.
         q = minimum
         if spring >= STIFF:
             yield _with_multipliers(model, solution.inputs, load_factor, q)
 
 
 def _is_near(corrected: Solution, x: FloatArray) -> bool:
-    """Whether an equilibrium is the one that a held rod was drawn to, and not some other that Newton met."""
+    """Whether a corrected equilibrium is the one that springs drew the rod to, and not another one."""
     if not corrected.model.discrete.constraints:
-        # A free rod has relaxed at the full load: no gap is left that Newton would have to close.
+        # A free rod has relaxed at the full load: Newton has no gap to close.
         return True
     unknowns = corrected.model.discrete.unknowns
     moved = corrected.x - x
@@ -144,7 +144,7 @@ def energy_at(model: Model, inputs: FloatArray, load_factor: float) -> Energy:
     Args:
         model: the model.
         inputs: stacked inputs, shape (model.inputs.size,).
-        load_factor: share of the loads, below 1 where the rod is held.
+        load_factor: share of the loads, below 1 for a held rod.
     """
     n = model.discrete.unknowns.count(BlockKind.STRAIN)
     strains = slice(0, n)
@@ -178,14 +178,14 @@ def _with_multipliers(model: Model, inputs: FloatArray, load_factor: float, q: F
     no_multipliers = np.zeros(model.size - n)
     x = np.append(q, no_multipliers)
     residual = column(model.path_residual(x, inputs, load_factor))
-    # Without multipliers the equations of the supports read λ gap.
+    # With zero multipliers the equations of the supports are λ gap.
     scaled_gaps = residual[n:]
     x[n:] = scaled_gaps / (load_factor - 1.0)
     return x
 
 
 def _corrected(solution: Solution, x: FloatArray, settings: NewtonSettings) -> Solution:
-    """Newton at the full load from what the rod has relaxed to, judged."""
+    """The judged end of Newton's method at the full load from a relaxed shape."""
     model = solution.model
     inputs = solution.inputs
     full_load = input_path(model, x, inputs, inputs)

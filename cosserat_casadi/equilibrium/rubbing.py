@@ -1,4 +1,4 @@
-"""Stretches of rods that rub on obstacles, or on each other along paths, and whether they stick or slip."""
+"""Stretches of rods in friction with obstacles, or with each other along paths, and whether they stick or slip."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from cosserat_casadi.model.contact_pairs import section_places
 from cosserat_casadi.model.registry import EFFECTS, remembering
 
 SLIPS = 1.0 - 1e-6
-"""Way over reach, or speed over slip speed, from which on a section slips."""
+"""Drag over its largest value, or speed over slip speed, above which a section slips."""
 
 
 @dataclass(frozen=True)
 class RubbingStretch:
-    """A stretch of a rod that an obstacle or a rod with friction presses, and that sticks or slips as a whole.
+    """A stretch of a rod, pressed by an obstacle or a rod with friction, that sticks or slips as a whole.
 
     Attributes:
         obstacle: name of the obstacle, or of the other rod.
@@ -40,12 +40,12 @@ class RubbingStretch:
 
 
 def rubbing_stretches(model: Model, slip: FloatArray) -> tuple[RubbingStretch, ...]:
-    """The stretches that stick or slip, resolved to the distance of nodes.
+    """The stretches that stick or slip, at the resolution of the nodes.
 
     Args:
         model: the model.
-        slip: of the nodes, load after load, and of sections, pair after pair, as ``model.memory`` and
-            ``model.slips`` give it.
+        slip: slip of the nodes, load after load, then of sections, pair after pair, from ``model.memory`` or
+            ``model.slips``.
     """
     return tuple(_stretches(model, slip))
 
@@ -75,7 +75,7 @@ def friction_between(
 
 
 def _nodes(model: Model) -> Iterator[tuple[Any, slice]]:
-    """Loads that remember, with their nodes among all."""
+    """Loads with memory, and the slice of their nodes among all of them."""
     begin = 0
     for load in remembering(model.discrete.loads):
         end = begin + model.discrete.rods[load.rod].grid.size
@@ -97,15 +97,15 @@ def _stretches(model: Model, slip: FloatArray) -> Iterator[RubbingStretch]:
 
 
 def _alike(obstacle: str, rod: str, places: FloatArray, slip: FloatArray) -> Iterator[RubbingStretch]:
-    """Stretches of neighbours that stick, then stretches that slip.
+    """Stretches of neighbouring sections that stick, then stretches that slip.
 
     Args:
-        obstacle: what presses.
+        obstacle: name of the obstacle or rod that presses.
         rod: name of the rod.
         places: abscissae of the neighbours, shape (k,).
-        slip: of each, shape (k,).
+        slip: slip of each, shape (k,).
     """
-    # They stand for the rod to the middle between them.
+    # Each represents the rod up to the middle between it and its neighbour.
     ends = np.concatenate([[0.0], (places[1:] + places[:-1]) / 2, [1.0]])
     for slips in (False, True):
         for part in runs((slip >= 0.0) & ((slip >= SLIPS) == slips)):

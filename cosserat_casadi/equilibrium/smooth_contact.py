@@ -1,4 +1,4 @@
-"""Where rods and bodies are pressed by obstacles that have a width, or rods by rods, and how hard."""
+"""Smooth contacts of a solution: stretches of rods and bodies that obstacles or rods press, and their forces."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ from cosserat_casadi.model.contact_pairs import ContactPair, section_places
 from cosserat_casadi.rod.placed_sections import SummedSections
 
 LOOKED_AT_BETWEEN = np.linspace(-1.0, 1.0, 33)
-"""Places about a section, in distances of sections, at which gaps are looked for."""
+"""Offsets from a section, in distances of sections, at which gaps are evaluated."""
 
 GAUSS_POINTS = 24
-"""Points at which the force along a stretch is summed."""
+"""Number of points at which the force along a stretch is summed."""
 
 
 def with_smooth_contacts(solution: Solution) -> Solution:
-    """The solution with the stretches that smooth obstacles press; as it is in a scene without them."""
+    """The solution with the stretches that smooth obstacles press; unchanged in a scene without these."""
     layers = smooth_layers(solution)
     if not (layers or solution.model.discrete.pairs) or not np.all(np.isfinite(solution.x)):
         return solution
@@ -47,7 +47,7 @@ def smooth_layers(solution: Solution) -> list[ContactLayer]:
 
 
 def _too_deep(contacts: list[Contact]) -> str:
-    """A sentence on the contact that is deepest, where it is deeper than its width; else nothing."""
+    """A sentence on the deepest contact, if it is deeper than its width; else empty."""
     depths = [-contact.gap / contact.width for contact in contacts if contact.gap is not None and contact.width]
     if max(depths, default=0.0) <= 1.0:
         return ""
@@ -59,10 +59,10 @@ def _too_deep(contacts: list[Contact]) -> str:
 
 
 def depths_along(model: Model, x: FloatArray, inputs: FloatArray) -> FloatArray:
-    """How deep nodes and bodies are inside smooth obstacles in several states, in widths, shape (k,).
+    """Largest depth of nodes and bodies in smooth obstacles in each of k states, in widths, shape (k,).
 
     Args:
-        model: of a scene with smooth obstacles.
+        model: model of a scene with smooth obstacles.
         x: unknowns, shape (k, model.size).
         inputs: stacked inputs, shape (k, model.inputs.size).
     """
@@ -75,7 +75,7 @@ def _push_between(
     """Force of a layer on a rod between two abscissae, over the length, shape (3,), N/m."""
     X, weights = _summed_at(sections, *between)
     if not len(X):
-        # Parameters have drawn sections apart, and the rod is in the layer between two of them.
+        # If parameters have drawn sections apart, the rod may be in the layer between two of them.
         return np.zeros(3)
     per_length = pressure(layer, _gaps(solution, layer, X))
     assert layer.rod is not None, "a layer along a rod"
@@ -86,13 +86,13 @@ def _push_between(
 def _summed_at(sections: SummedSections | None, start: float, end: float) -> tuple[FloatArray, FloatArray]:
     """Abscissae at which the force along a stretch is summed, and their weights, shape (k,) each.
 
-    Where the equations sum it between nodes, it is their sum: it holds the rod in balance.
+    If the equations sum the layer between nodes, their sections are used: this sum balances the rod.
     """
     if sections is not None:
         X = known(sections.placed.X)
         inside = (start <= X) & (end >= X)
         return X[inside], known(sections.lengths)[inside] / sections.rod.length
-    # The force vanishes smoothly at both ends, or ends with the rod.
+    # The force vanishes smoothly at both ends, or the stretch ends at the end of the rod.
     nodes, weights = gauss_legendre(GAUSS_POINTS)
     return start + (end - start) * (nodes + 1) / 2, (end - start) / 2 * weights
 
@@ -125,12 +125,12 @@ def _gaps(solution: Solution, layer: ContactLayer, X: FloatArray) -> FloatArray:
     """Gaps along a rod, shape (k,), m."""
     assert layer.rod is not None
     relative = gap_along(solution, layer.rod, layer.obstacle, X)
-    # They are told relative to the length that the rod has in the scene.
+    # Gaps are relative to the length of the rod in the scene.
     return relative * solution.model.discrete.rods[layer.rod].properties.length
 
 
 def _crossing(X: FloatArray, values: FloatArray, before: int, after: int) -> float:
-    """Abscissa between two neighbours of X at which values change sign; the end of the rod beyond it."""
+    """Abscissa between two neighbours of X at which values change sign; at an end of X this end."""
     if before < 0:
         return float(X[0])
     if after >= len(values):
@@ -145,7 +145,7 @@ def section_positions(
     """Positions of the sections of both rods of a pair, shape (sections, 3) each, m.
 
     Args:
-        model: of the scene.
+        model: model of the scene.
         pair: the pair.
         x: unknowns, shape (model.size,).
         inputs: stacked inputs, shape (model.inputs.size,).
@@ -158,7 +158,7 @@ def section_positions(
 
 
 def contacts_of_rods(solution: Solution) -> Iterator[Contact]:
-    """The stretches of rods that others press, with the resultant on the first rod of each pair."""
+    """The stretches of rods that other rods press, with the resultant on the first rod of each pair."""
     for pair in solution.model.discrete.pairs:
         yield from _contacts_of_pair(solution, pair)
 
@@ -190,7 +190,7 @@ def _contacts_of_pair(solution: Solution, pair: ContactPair) -> Iterator[Contact
 
 
 def _nearest(solution: Solution, pair: ContactPair, place: tuple[float, float]) -> tuple[tuple[float, float], float]:
-    """Abscissae about a place at which two rods are nearest, between their sections too, and the gap there, m."""
+    """Abscissae near a place at which two rods are nearest, between their sections too, and the gap there, m."""
     around = [np.clip(at + LOOKED_AT_BETWEEN / count, 0.0, 1.0) for at, count in zip(place, pair.sections, strict=True)]
     first, second = (solution.pose(X, rod).position for X, rod in zip(around, pair.rods, strict=True))
     gaps = np.linalg.norm(first[:, None] - second, axis=2) - _touching(solution, pair, *around)
@@ -199,7 +199,7 @@ def _nearest(solution: Solution, pair: ContactPair, place: tuple[float, float]) 
 
 
 def _touching(solution: Solution, pair: ContactPair, first: FloatArray, second: FloatArray) -> FloatArray:
-    """Distance of centres that touch at abscissae of both rods, shape (first, second), m."""
+    """Distance of the centres of touching sections at abscissae of both rods, shape (first, second), m."""
     rods = solution.model.at().discrete.rods
     radii = [section_radius(rods[rod].properties, X) for rod, X in zip(pair.rods, (first, second), strict=True)]
     return np.asarray(radii[0][:, None] + radii[1])
@@ -213,7 +213,7 @@ def _contacts(solution: Solution, layer: ContactLayer) -> Iterator[Contact]:
         yield from _disk_contact(solution, layer)
         return
     length = solution.model.length(layer.rod, solution.inputs)
-    # Sections at which the equations sum the layer, where these are not the nodes.
+    # Sections at which the equations sum the layer, if these are not the nodes.
     sections = solution.model.discrete.closer_sections.get(layer.name)
     looked_at = DENSE if sections is None else np.union1d(DENSE, known(sections.placed.X))
     gaps = _gaps(solution, layer, looked_at)

@@ -1,9 +1,9 @@
 """Bars, balls and other rods that no step may take a rod, a disk or a body through, where contact is smooth.
 
-A smooth obstacle pushes where a rod is in it: a step that ends behind it has not felt it. The ends of a step are judged
-by their depth; here the way between them is, on which unknowns and inputs change in proportion. A part of it in which
-sections leave the straight line is halved where the room beside an obstacle does not cover that. So it is with rods
-that push each other.
+A smooth obstacle pushes only a rod that is in it: a step that ends behind it meets no force. The ends of a step are
+judged by their depth; this module checks the way between them, on which unknowns and inputs change linearly. A part of
+the way is halved if its sections leave the straight line by more than the room beside an obstacle. Rods that push each
+other are checked in this way too.
 """
 
 from __future__ import annotations
@@ -41,19 +41,19 @@ from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.numerics.continuation import Path, PathPoint
 
 EVERY = 2
-"""Sections of rods that touch rods of which one is looked at."""
+"""Stride through the sections of rods that touch rods."""
 
 SAME = 1e-6
-"""Distance of unknowns, over their norm, within which two equilibria are one."""
+"""Distance of unknowns, over their norm, below which two equilibria count as one."""
 
 SHORTEST = 2.0**-9
-"""Share of a step below which no part is halved: it counts as barred."""
+"""Share of a step below which a part is not halved but counts as barred."""
 
 REMEMBERED = 16
-"""Shares of a way of parameters whose places are remembered: all cases ask for the same shares."""
+"""Number of shares of a way of parameters whose models are kept: all cases use the same shares."""
 
 ROUGHLY = 8
-"""Sections of which one is looked at where many states follow each other: rods are nearly straight between them."""
+"""Stride through sections for series of states: rods are nearly straight between these sections."""
 
 
 class _Way(NamedTuple):
@@ -62,7 +62,7 @@ class _Way(NamedTuple):
     Attributes:
         start: first positions, shape (k, 3), m.
         end: last positions, shape (k, 3), m.
-        bend: how far sections are off the straight way in the middle of the step, m.
+        bend: largest distance of sections from the straight way in the middle of the step, m.
     """
 
     start: FloatArray
@@ -71,7 +71,7 @@ class _Way(NamedTuple):
 
 
 PlacesAt = Callable[[float, FloatArray, FloatArray], list[FloatArray]]
-"""Places of rods and bodies at a share of a step on which the model changes, at the unknowns and inputs there."""
+"""Positions of rods and bodies from a share of a step on which the model changes, and its unknowns and inputs."""
 
 
 @dataclass(frozen=True)
@@ -82,23 +82,23 @@ class SmoothBarriers:
 
     @cached_property
     def watched(self) -> list[tuple[str, scenes.ObstacleRecord]]:
-        """Pairs of a rod and an obstacle that has another side, on which the rod could come out."""
+        """Pairs of a rod and a smooth obstacle of finite thickness, which the rod could pass."""
         scene = self.model.scene
         thin = _thin_obstacles(scene)
         return [(rod.name, obstacle) for rod in scene.rods for obstacle in thin if obstacle.concerns(rod.name)]
 
     @cached_property
     def watched_bodies(self) -> list[ContactLayer]:
-        """The layers of such obstacles for bodies and disks."""
+        """The layers of obstacles of finite thickness for bodies and disks."""
         return [layer for layer in thin_layers(self.model.discrete) if layer.body is not None or layer.at is not None]
 
     @property
     def any(self) -> bool:
-        """Whether there is anything to watch."""
+        """Whether the scene has any barriers."""
         return bool(self.watched or self.watched_bodies or self.model.discrete.pairs)
 
     def compares_with(self, other: SmoothBarriers) -> bool:
-        """Whether another model has the same rods and bodies beside the same obstacles, by name."""
+        """Whether another model has the same names of rods, bodies and obstacles in its barriers."""
         return self._names == other._names
 
     @property
@@ -114,13 +114,13 @@ class SmoothBarriers:
         inputs: tuple[FloatArray, FloatArray],
         places: PlacesAt | None = None,
     ) -> bool:
-        """Whether a rod or body is deep inside a bar or ball on the way between two shapes, and at neither of its ends.
+        """Whether a rod or body passes a bar or ball, or two rods pass each other, on the way between two shapes.
 
         Args:
             before: unknowns at the start, shape (model.size,).
             after: unknowns at the end, shape (model.size,).
             inputs: stacked inputs at start and end.
-            places: places of rods and bodies on the way; by default this model's.
+            places: positions of rods and bodies on the way; by default from this model.
         """
         last = self.model.inputs.nearer(*inputs)
 
@@ -145,13 +145,13 @@ class SmoothBarriers:
         part: tuple[float, float],
         ends: tuple[list[FloatArray], list[FloatArray]],
     ) -> bool:
-        """Whether a part of a step leads through something thin.
+        """Whether a part of a step leads through an obstacle or a rod.
 
         Args:
-            places_at: share of the step ↦ places.
-            lengths: of the first rod of each pair, m.
-            part: the shares at which it starts and ends.
-            ends: the places there.
+            places_at: share of the step ↦ positions.
+            lengths: length of the first rod of each pair, m.
+            part: the shares of the step at which the part starts and ends.
+            ends: the positions at these shares.
         """
         halfway = sum(part) / 2
         middle = places_at(halfway)
@@ -167,7 +167,7 @@ class SmoothBarriers:
     def _leads_through(
         self, ends: tuple[list[FloatArray], list[FloatArray]], bends: list[float], lengths: list[float]
     ) -> bool | None:
-        """Whether straight ways do, none of which is off by more than its bend, m; None where that does not tell."""
+        """Whether a way that is straight up to its bend, m, leads through an obstacle or a rod; None if undecided."""
         ways = iter([_Way(*own) for own in zip(*ends, bends, strict=True)])
         barred = [self._rod_is_inside(rod, obstacle, next(ways)) for rod, obstacle in self.watched]
         barred += [self._ball_is_inside(layer, next(ways)) for layer in self.watched_bodies]
@@ -178,7 +178,7 @@ class SmoothBarriers:
         return any(barred)
 
     def _rod_is_inside(self, rod: str, obstacle: scenes.ObstacleRecord, way: _Way) -> bool | None:
-        """Whether a section of a rod is deep inside an obstacle on the way between positions."""
+        """Whether a section of a rod is too deep in an obstacle on the way between positions; None if undecided."""
         properties = self.model.discrete.rods[rod].properties
         deepest = float(depth_allowed(obstacle, properties.length))
         thinnest = float(section_radius(properties, SECTIONS).min())
@@ -187,7 +187,7 @@ class SmoothBarriers:
         return _as_far_as_bent(lambda bend: is_inside_between(*given, bend=bend), way.bend, admitted)
 
     def _ball_is_inside(self, layer: ContactLayer, way: _Way) -> bool | None:
-        """Whether the largest ball in a body or a disk is deep inside an obstacle on the way between positions."""
+        """Whether the largest ball in a body or a disk is too deep in an obstacle on a way; None if undecided."""
         obstacle, radius, length = self._ball(layer)
         deepest = float(depth_allowed(obstacle, length))
         admitted = float(admitted_depth(obstacle, length, deepest, radius))
@@ -195,7 +195,7 @@ class SmoothBarriers:
         return _as_far_as_bent(lambda bend: ball_is_inside_between(*given, bend), way.bend, admitted)
 
     def _ball(self, layer: ContactLayer) -> tuple[scenes.ObstacleRecord, float, float]:
-        """Obstacle of a layer, radius of the ball before it, and what depths are relative to, m."""
+        """Obstacle of a layer, radius of the ball that it pushes, m, and unit of depths, m."""
         return layer.obstacle, float(ball_in(layer)), float(length_of(self.model.discrete, layer))
 
     def _place(self, layer: ContactLayer, x: FloatArray, inputs: FloatArray) -> FloatArray:
@@ -208,7 +208,7 @@ class SmoothBarriers:
         return np.array([np.interp(layer.at, SECTIONS, axis) for axis in along.T])
 
     def passages(self, x: FloatArray, inputs: FloatArray) -> Iterator[int]:
-        """Numbers of the states from which the straight way to the next one is barred, as :meth:`are_between` has it.
+        """Indices of the states with a barred straight way to the next state; see :meth:`are_between`.
 
         Args:
             x: unknowns of states in their order, shape (k, model.size).
@@ -221,7 +221,7 @@ class SmoothBarriers:
                 yield row
 
     def _somewhere_inside(self, x: FloatArray, inputs: FloatArray) -> bool:
-        """Whether a rod or body is deep inside an obstacle on the ways from state to state, or as near as they bend."""
+        """Whether a rod or body may be too deep in an obstacle between successive states, within the ways' bends."""
         halfway = ((x[:-1] + x[1:]) / 2, (inputs[:-1] + inputs[1:]) / 2)
         for rod, obstacle in self.watched:
             properties = self.model.discrete.rods[rod].properties
@@ -242,8 +242,8 @@ class SmoothBarriers:
         return False
 
     def _pass_each_other(self, pair: ContactPair, length: float, first: _Way, second: _Way) -> bool | None:
-        """Whether the axes of two rods come nearer than half their thickness on the way of their sections."""
-        # Every other section: they are nearer each other than half the thickness, unless an input lengthens the rods.
+        """Whether the axes of two rods come nearer than half their thickness on a way; None if undecided."""
+        # The spacing of these sections is below half the thickness, unless an input lengthens the rods.
         spacings = [
             max(np.linalg.norm(np.diff(places, axis=0), axis=1).max() for places in (own.start, own.end))
             for own in (first, second)
@@ -259,7 +259,7 @@ class SmoothBarriers:
         bend = first.bend + second.bend
         allowed = max(half, float(np.hypot(*spacings)) * EVERY / 2)
         longest = np.sqrt(np.einsum("ki,ki->k", way, way).max(initial=0.0))
-        # Others stay apart.
+        # Other pairs of sections stay apart.
         near = np.einsum("ki,ki->k", apart, apart) <= (allowed + bend + longest) ** 2
         apart, way = apart[near], way[near]
         lengths = np.einsum("ki,ki->k", way, way)
@@ -274,12 +274,12 @@ class SmoothBarriers:
 
 
 def _as_far_as_bent(is_barred: Callable[[float], bool], bend: float, admitted: float) -> bool | None:
-    """Whether a straight way is barred; None where one that is off it by the bend would be, and that is too far off.
+    """Whether a way is barred: True or False for a straight way; None if only a way within the bend may be barred.
 
     Args:
-        is_barred: whether one is that may be off by so much, m.
-        bend: how far the way is off the straight one, m.
-        admitted: depth, m, of which a share of :data:`FINEST` is overlooked.
+        is_barred: whether a way within a distance, m, from the straight one may be barred.
+        bend: largest distance of the way from the straight one, m.
+        admitted: admitted depth, m; a bend below the share :data:`FINEST` of it is ignored.
     """
     if bend <= FINEST * admitted:
         return is_barred(0.0)
@@ -287,16 +287,16 @@ def _as_far_as_bent(is_barred: Callable[[float], bool], bend: float, admitted: f
 
 
 def quaternions_of(model: Model) -> list[int]:
-    """Places of the first numbers of quaternions among the inputs, behind which the parameters stand."""
+    """Indices of the first entries of quaternions in the inputs followed by the parameters."""
     return model.inputs.quaternions + [model.inputs.size + start for start in model.parameters.quaternions]
 
 
 def places_along(model: Model, parameters: tuple[FloatArray, FloatArray]) -> PlacesAt:
-    """Places on the straight way from some parameters to others.
+    """Positions of rods and bodies on the straight way from parameters to others.
 
     Args:
-        model: with parameters.
-        parameters: at the shares 0 and 1, shape (model.parameters.size,) each.
+        model: a model with parameters.
+        parameters: parameters at the shares 0 and 1, shape (model.parameters.size,) each.
     """
     last = model.parameters.nearer(*parameters)
 
@@ -309,7 +309,7 @@ def places_along(model: Model, parameters: tuple[FloatArray, FloatArray]) -> Pla
 
 
 def places_between(earlier: SmoothBarriers, later: SmoothBarriers) -> PlacesAt:
-    """Places on straight lines from places in one model to places in another, between which nothing is known."""
+    """Positions on straight lines from one model to another, if no parameters lead from one to the other."""
 
     def places(share: float, x: FloatArray, inputs: FloatArray) -> list[FloatArray]:
         both = zip(earlier.places(x, inputs), later.places(x, inputs), strict=True)
@@ -319,22 +319,22 @@ def places_between(earlier: SmoothBarriers, later: SmoothBarriers) -> PlacesAt:
 
 
 def has_barriers(scene: scenes.Scene) -> bool:
-    """Whether a scene has smooth obstacles with another side, or rods that touch rods."""
+    """Whether a scene has smooth obstacles of finite thickness, or contacts of rods."""
     return bool(_thin_obstacles(scene) or scene.rod_contacts)
 
 
 def _thin_obstacles(scene: scenes.Scene) -> list[scenes.ObstacleRecord]:
-    """Smooth obstacles that have another side."""
+    """Smooth obstacles of finite thickness."""
     return [obstacle for obstacle in scene.obstacles if obstacle.is_smooth and isfinite(obstacle.thickness)]
 
 
 def are_one(x: FloatArray, other: FloatArray) -> bool:
-    """Whether two vectors of unknowns at the same inputs are one equilibrium."""
+    """Whether two vectors of unknowns at the same inputs are the same equilibrium to rounding."""
     return bool(np.linalg.norm(x - other) <= SAME * (1 + np.linalg.norm(x)))
 
 
 def length_of(discrete: DiscreteScene, layer: ContactLayer) -> Scalar:
-    """Length that depths before a layer are relative to: of its rod, or of the longest one that holds its body, m."""
+    """Unit of depths in a layer: the length of its rod, or of the longest rod that holds its body, m."""
     if layer.body is not None:
         return discrete.body_frame(layer.body).length
     assert layer.rod is not None, "a layer of no body is of a rod"
@@ -347,7 +347,7 @@ def ball_in(layer: ContactLayer) -> Scalar:
 
 
 def depth_allowed(obstacle: scenes.ObstacleRecord, length: Scalar) -> Scalar:
-    """Depth inside a smooth obstacle that is not deep, relative to the length."""
+    """Admitted depth inside a smooth obstacle on a step, relative to the length."""
     assert obstacle.width is not None
     return DEEP + obstacle.width / length
 
@@ -359,14 +359,14 @@ def past_no_obstacle(
     parameters: tuple[FloatArray, FloatArray] | None = None,
     before_it: PlacesAt | None = None,
 ) -> Path:
-    """A path without steps through smooth bars, balls and rods; the path itself in a scene that has none.
+    """A path that refuses steps through smooth bars, balls and rods; the path itself in a scene without these.
 
     Args:
-        path: of a model on the straight line to other inputs, and perhaps parameters.
+        path: path of a model on the straight line to other inputs, and perhaps parameters.
         model: the model.
         inputs: stacked inputs at t = 0 and 1.
-        parameters: of a model that has them, at t = 0 and 1.
-        before_it: places on the way from the model that its start is an equilibrium of; where it is another.
+        parameters: parameters at t = 0 and 1; None without parameters.
+        before_it: positions on the way from another model, if the start is an equilibrium of that model.
     """
     barriers = SmoothBarriers(model)
     if not barriers.any:
@@ -383,7 +383,7 @@ def past_no_obstacle(
                 places = places_along(model, step)
             return not own.are_between(first, last, at_ends, places)
         except SceneError:
-            # The scene refuses such parameters: where its rods would be is not known.
+            # The scene refuses such parameters: the positions of its rods are unknown.
             return False
 
     return replace(path, admits=admits)

@@ -26,7 +26,7 @@ SECTIONS_APART = (
     "sections at which contact is summed lie too far apart for this length, radius or width: build the scene with "
     "these numbers, or on more intervals."
 )
-"""Remedy where inputs or parameters have drawn sections too far apart."""
+"""Remedy if inputs or parameters have drawn sections too far apart."""
 
 ModelType = TypeVar("ModelType", bound=SystemFunctions)
 
@@ -73,22 +73,22 @@ class SectionForce(NamedTuple):
 
 @dataclass(frozen=True)
 class Contact:
-    """Where a rod, or a body, touches an obstacle, and how it is held off.
+    """A contact of a rod, or a body, with an obstacle, and its forces.
 
     Attributes:
         obstacle: name of the obstacle, or of the rod that presses.
         owner: name of the rod, or of the body, that touches.
-        start: abscissa X at which contact begins; 0 of a body.
+        start: abscissa X at which contact begins; 0 for a body.
         end: abscissa at which it ends; ``start`` for a point.
         force: resultant on the rod, world axes, shape (3,), N.
-        ends: force at the point, or at both ends of a line, along the normals there, N; none where contact is smooth.
-        kind: "point" or "line"; "smooth" where the obstacle has a width.
-        width: of the obstacle, m; None where contact is exact.
-        of_body: whether it is a body that is pressed.
-        gap: smallest gap along a smooth contact, m, negative where the rod is inside; None where contact is exact.
-        inside: forces at sections inside a line, where loads are taken by the obstacle.
-        on_rods: where the rod and another one, which stands for the obstacle, are nearest: X of either; None of
-            contact with an obstacle.
+        ends: force at the point, or at both ends of a line, along the normals there, N; empty for smooth contact.
+        kind: "point" or "line"; "smooth" for an obstacle with a width.
+        width: width of the obstacle, m; None for exact contact.
+        of_body: whether the owner is a body.
+        gap: smallest gap along a smooth contact, m, negative for a rod inside the obstacle; None for exact contact.
+        inside: forces at sections inside a line, at which the obstacle balances loads.
+        on_rods: abscissae X of the rod and of the other rod, the obstacle, where they are nearest; None for contact
+            with an obstacle.
     """
 
     obstacle: str
@@ -107,17 +107,17 @@ class Contact:
 
 @dataclass(frozen=True, repr=False)
 class Equilibrium(Result, ABC, Generic[ModelType]):
-    """The end of a solve; an equilibrium only where ``converged`` says so.
+    """The end of a solve; it is an equilibrium only if ``converged`` is true.
 
     Attributes:
         model: the model that was solved.
-        inputs: stacked inputs it was solved for, shape (model.inputs.size,).
+        inputs: stacked inputs of the solve, shape (model.inputs.size,).
         x: unknowns, shape (model.size,).
         outcome: how the solve ended.
         message: a sentence for the user.
         residual_norm: size of the residual at x, computed again at the end.
         iterations: Newton iterations of the search.
-        load_factor: share of the loads, or of the way, that was reached; 1 unless the load stalled.
+        load_factor: share of the loads, or of the path, that was reached; 1 unless the path stalled.
         error_estimate: estimated error of the poses of the tips, relative to a length and in rad; None if not
             estimated.
     """
@@ -135,12 +135,12 @@ class Equilibrium(Result, ABC, Generic[ModelType]):
     @property
     @abstractmethod
     def stable(self) -> bool | None:
-        """Whether the equilibrium is stable; None where that has no meaning."""
+        """Whether the equilibrium is stable; None if stability is not defined."""
 
     @property
     @abstractmethod
     def remedy(self) -> str:
-        """The remedy where the error is above the tolerance."""
+        """The remedy for an error above the tolerance."""
 
     @abstractmethod
     def tip(self, name: str | None = None) -> Any:
@@ -153,20 +153,20 @@ class Equilibrium(Result, ABC, Generic[ModelType]):
 
     @property
     def judged_error(self) -> float | None:
-        """Estimated error that the scene's tolerance is for; None if not estimated."""
+        """Estimated error that the scene's tolerance bounds; None if not estimated."""
         return self.error_estimate
 
     @property
     def largest_error(self) -> float | None:
-        """Estimated error of the tips, or where it is known of all sections; None if not estimated."""
+        """Estimated error of all sections, or of the tips if that is all that is known; None if not estimated."""
         return self.error_estimate
 
     @property
     def within_tolerance(self) -> bool | None:
-        """Whether the estimated error is within the scene's tolerance; None where no tolerance has a meaning.
+        """Whether the estimated error is within the scene's tolerance; None if no tolerance applies.
 
-        A tolerance that nobody has written asks for nothing of modes and nodes that the scene fixes. What did not
-        converge is not within any tolerance.
+        A default tolerance does not apply to modes and nodes that the scene fixes. A solve that did not converge is not
+        within any tolerance.
         """
         accuracy = self.model.scene.accuracy
         if not accuracy.binds:
@@ -175,30 +175,30 @@ class Equilibrium(Result, ABC, Generic[ModelType]):
             return False
         if self.judged_error is None:
             return None
-        # Written so that an estimate which is not a number counts as too large.
+        # With this comparison an estimate that is NaN counts as too large.
         return self.judged_error <= accuracy.tolerance
 
     def unresolved(self) -> Self:
-        """These unknowns, as an equilibrium of the discrete model alone."""
+        """This solution with the outcome UNRESOLVED: it is an equilibrium of the discrete model alone."""
         return replace(self, outcome=Outcome.UNRESOLVED, message=Outcome.UNRESOLVED.value)
 
 
 @dataclass(frozen=True, repr=False)
 class Solution(Equilibrium[Model]):
-    """The end of a solve of rods; an equilibrium only where ``converged`` says so.
+    """The end of a solve of rods; it is an equilibrium only if ``converged`` is true.
 
     The residual norm is the relative norm of the dimensionless residual. The iterations of a scene count all
     discretisations that were tried. The error estimate covers the poses of the tips, as distance over the rod length
     and as angle in rad, and the lengths of cables over the rod length; of held rods sections between the ends too.
 
     Attributes:
-        smallest_eigenvalue: of the second variation, in units of EI/ℓ of the scene's own numbers, whatever values
-            parameters have, and in exact contact with these values; None where loads have no potential.
-        stable: whether every admissible variation costs energy; None where that has no meaning.
+        smallest_eigenvalue: smallest eigenvalue of the second variation, in units of EI/ℓ by the scene's own numbers,
+            in exact contact by the values of its parameters; None if loads have no potential.
+        stable: whether every admissible variation costs energy; None if stability is not defined.
         shape_error_estimate: the error estimate over all sections, sections between nodes included.
-        wrench_error_estimate: estimated relative error of the wrenches of bases, supports and joints, and of tensions
-            that are unknown; None if not estimated.
-        contacts: where rods touch obstacles, in order along each rod. The forces of exact ones are inputs of the model.
+        wrench_error_estimate: estimated relative error of the wrenches of bases, supports and joints, and of unknown
+            tensions; None if not estimated.
+        contacts: contacts with obstacles, in order along each rod. Forces of exact contacts are inputs of the model.
     """
 
     smallest_eigenvalue: float | None = None
@@ -209,11 +209,11 @@ class Solution(Equilibrium[Model]):
 
     @cached_property
     def layer_error_estimate(self) -> float | None:
-        """Estimated change of tips and bodies to the equilibrium whose contacts have no widths.
+        """Estimated change of the poses of tips and bodies to the equilibrium with zero widths of contact.
 
-        It has the unit of ``error_estimate``, which does not contain it but judges the scene as it is written, with its
-        widths. No tolerance binds it. None where the solution is no equilibrium, in a scene without smooth contact, and
-        where friction remembers a path. It is computed from the Jacobian when it is first read.
+        It has the unit of ``error_estimate``, which judges the scene with its widths and does not contain this change.
+        No tolerance bounds it. It is None without an equilibrium, without smooth contact, and if friction remembers a
+        path. It is computed from the Jacobian on first use.
         """
         # The module imports this one.
         from cosserat_casadi.equilibrium.layer_error import layer_error
@@ -222,7 +222,7 @@ class Solution(Equilibrium[Model]):
 
     @property
     def judged_error(self) -> float | None:
-        """Estimated error of the tips, or of the shape where the scene asks for that; None if not estimated."""
+        """Estimated error of the tips, or of the shape if the scene asks for it; None if not estimated."""
         return self.shape_error_estimate if self.model.scene.accuracy.shape else self.error_estimate
 
     @property
@@ -231,12 +231,12 @@ class Solution(Equilibrium[Model]):
         return self.shape_error_estimate
 
     def unresolved(self) -> Self:
-        """These unknowns, as an equilibrium of the discrete model alone, whose stability says nothing of the rod."""
+        """This solution with the outcome UNRESOLVED and no stability, since its stability is not that of the rod."""
         return replace(super().unresolved(), stable=None)
 
     @property
     def remedy(self) -> str:
-        """The remedy where the error is above the tolerance."""
+        """The remedy for an error above the tolerance."""
         if self.sections_lie_apart:
             return SECTIONS_APART
         if self.model.scene.accuracy.fixed_by_hand:
@@ -253,7 +253,7 @@ class Solution(Equilibrium[Model]):
 
     @property
     def _is_in_chosen_ranges(self) -> bool:
-        """Whether modes were chosen for ranges that have the inputs inside; not of ranges of parameters."""
+        """Whether modes were chosen for ranges of inputs that contain these inputs; false with ranges of parameters."""
         ranges = self.model.scene.accuracy.chosen_ranges
         indices = column_indices(self.model.inputs)
         if not ranges or not ranges.keys() <= indices.keys():
@@ -265,7 +265,7 @@ class Solution(Equilibrium[Model]):
         return self.pose(1.0, name)
 
     def body(self, name: str | None = None) -> SolvedPoses:
-        """Pose of a rigid body; the name may be left out where there is one body.
+        """Pose of a rigid body; the name may be left out in a scene with one body.
 
         Raises:
             KeyError: there is no such body, or there are several to choose from.
@@ -289,7 +289,7 @@ class Solution(Equilibrium[Model]):
 
         Args:
             X: one abscissa, or an array of shape (k,).
-            rod: name of the rod; may be left out where there is one.
+            rod: name of the rod; may be left out in a scene with one rod.
         """
         name = self.model.rod_name(rod)
         fields = self._nodal_fields(name)
@@ -302,14 +302,14 @@ class Solution(Equilibrium[Model]):
         discrete = self.model.discrete
         discrete_rod = discrete.rods[name]
         rod_slice = discrete.unknowns.strain(name)
-        # Strains are written per reference length: a rod that is drawn out takes the ratio.
+        # Strains are per reference length: those of a rod that is drawn out are scaled by the ratio of lengths.
         ratio = self.model.length_ratio(name, self.inputs)
         q = ca.DM(self.x[rod_slice])
         strain = ca.DM(discrete_rod.at(q, np.atleast_1d(X), ratio))
         return np.reshape(strain.full().T, (*np.shape(X), 6))
 
     def internal_wrench(self, X: npt.ArrayLike, rod: str | None = None) -> FloatArray:
-        """Internal wrench Λ = [M; N] of rod and actuators in the sections' frames, N m and N, shape as of strains."""
+        """Internal wrench Λ = [M; N] of rod and actuators in section axes, N m and N, shape (6,) or (k, 6)."""
         name = self.model.rod_name(rod)
         fields = self._nodal_fields(name)
         interpolation = self._interpolation(X, name)
@@ -328,16 +328,16 @@ class Solution(Equilibrium[Model]):
         """Tension (N) and length (m) of a tendon, or pressure (Pa) and volume (m³) of a chamber."""
         function = self.model.actuator[name]
         values = function(self.x, self.inputs)
-        # The third output, the rate of the conjugate with the unknowns, is for control.
+        # The third output, the derivative of the conjugate by the unknowns, is for control.
         return {function.name_out(i): float(values[i]) for i in range(2)}
 
     def joint(self, name: str) -> dict[str, float]:
         """Moment (N m) or force (N) along a joint on its section, and its angle (rad) or displacement (m).
 
-        Of a joint with stops also their push, a part of the first, by the name ``stop``.
+        A joint with stops also has their push, which is part of the first number, as ``stop``.
 
         Raises:
-            KeyError: nothing acts along a joint of that name.
+            KeyError: no joint of this name has a coordinate.
         """
         function = self.model.joint[name]
         return {
@@ -352,12 +352,12 @@ class Solution(Equilibrium[Model]):
         return _NodalFields(*arrays)
 
     def _interpolation(self, X: npt.ArrayLike, rod: str) -> FloatArray:
-        """Matrix that takes values at the nodes of a rod to abscissae, shape (nodes,) or (k, nodes)."""
+        """Interpolation matrix from values at the nodes of a rod to abscissae, shape (nodes,) or (k, nodes)."""
         return self.model.discrete.rods[rod].grid.interpolation_matrix(X)
 
 
 class _NodalFields(NamedTuple):
-    """Outputs of ``model.fields``, one column a node, world frame but for the wrench.
+    """Outputs of ``model.fields``, one column for each node, in the world frame except the wrench.
 
     Attributes:
         position: shape (3, nodes), m.
@@ -375,15 +375,15 @@ class _NodalFields(NamedTuple):
 
 
 def poses_between_nodes(interpolation: FloatArray, position: FloatArray, quaternion: FloatArray) -> SolvedPoses:
-    """Poses of sections from those at the nodes of a rod.
+    """Poses of sections from the poses at the nodes of a rod.
 
     Args:
         interpolation: :meth:`Grid.interpolation_matrix`, shape (nodes,) for one section or (k, nodes).
-        position: at the nodes, shape (nodes, 3), m.
-        quaternion: at the nodes, shape (nodes, 4).
+        position: positions of the nodes, shape (nodes, 3), m.
+        quaternion: quaternions of the nodes, shape (nodes, 4).
     """
     between = interpolation @ quaternion
-    # Between nodes an interpolated quaternion is a unit quaternion to the accuracy of the grid only.
+    # Between nodes the norm of an interpolated quaternion is 1 only to the accuracy of the grid.
     between /= np.linalg.norm(between, axis=-1, keepdims=True)
     return SolvedPoses(interpolation @ position, rotations(between), between)
 

@@ -45,32 +45,32 @@ from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress
 
 CANNOT_RELAX = " Assemblies, free rods and cables of given length cannot be let settle to less energy."
-"""Sentence in the message of a solution where relaxing is not offered."""
+"""Sentence in the message of a solution that cannot be relaxed."""
 
 IN_CONTACT = " Rods in contact cannot be let settle to less energy."
-"""Sentence in the message of an unstable solution where rods touch obstacles."""
+"""Sentence in the message of an unstable solution in exact contact."""
 
 NONE_STABLE = " No stable equilibrium was found by letting the rod settle to less energy."
-"""Sentence in the message of a solution where no try led to a stable equilibrium."""
+"""Sentence in the message of a solution after all tries for a stable equilibrium have failed."""
 
 AT_ONCE = " The start has other parameters, and rods would pass through an obstacle or a rod: change them by less."
-"""Sentence in the message where a solution with other parameters does not lead to one."""
+"""Sentence in the message if the path from a solution with other parameters does not end at a solution."""
 
 NOTHING = 1e-14
-"""Relative norm of a residual that is rounding alone: of the unloaded scene where nothing acts."""
+"""Relative norm of a residual that is rounding alone, as that of the unloaded scene without loads is."""
 
 Start = Solution | FloatArray | None
-"""Where a solve starts: a solution, unknowns, or the unloaded rod."""
+"""Start of a solve: a solution, unknowns, or None for the unloaded rod."""
 
 
 @dataclass(frozen=True)
 class _Task:
-    """Arguments of a method: the problem that it solves, and its limits.
+    """Arguments of a method: its problem and its limits.
 
     Attributes:
         model: what to solve.
         inputs: stacked inputs, shape (model.inputs.size,).
-        start: where to start.
+        start: start of the solve.
         limits: limits of the continuation.
         progress: receives the share of the path that is done.
     """
@@ -83,14 +83,14 @@ class _Task:
 
     @property
     def model_of_start(self) -> Model | None:
-        """The model of a solution to start from, where it is not this one: it has other numbers, or is built anew."""
+        """The model of a solution to start from, if it is another one, with other numbers or built anew; else None."""
         if not isinstance(self.start, Solution) or self.start.model is self.model:
             return None
         return self.start.model
 
     @cached_property
     def parametric(self) -> Model:
-        """The model with the parameters that its scene names; this one where it names none, or remembers friction."""
+        """The model with the parameters of its scene as arguments; this model if there are none, or with memory."""
         own, nominal = self.model.discrete, self.model.discrete.nominal
         if not nominal.scene.parameters or nominal.layout is not own.layout:
             return self.model
@@ -98,7 +98,7 @@ class _Task:
 
     @cached_property
     def parameters(self) -> tuple[FloatArray, FloatArray] | None:
-        """Parameters of the model of the start, and of this one; None where not these alone are others."""
+        """Parameters of the model of the start, and of this model; None if the models differ in more than these."""
         before, model = self.model_of_start, self.parametric
         if before is None or not model.parameters.size:
             return None
@@ -108,13 +108,13 @@ class _Task:
             first, last = (parameter_layout(scene).pack() for scene in scenes)
             is_alike = model.at(first).scene == before.scene
         except SceneError:
-            # Of another scene: its numbers are refused here, or it has none by these names.
+            # The other scene has numbers that are refused here, or lacks these names.
             is_alike = False
         return (first, model.parameters.nearer(first, last)) if is_alike else None
 
     @property
     def places_of_start(self) -> PlacesAt | None:
-        """Places of rods and bodies on the way from the model of the start; None where that is this one."""
+        """Positions of rods and bodies on the way from the model of the start; None if it is this model."""
         later = SmoothBarriers(self.model)
         if self.model_of_start is None or not later.any:
             return None
@@ -125,7 +125,7 @@ class _Task:
 
     @property
     def first_iterate(self) -> FloatArray:
-        """Unknowns that the start stands for, shape (n,)."""
+        """Unknowns at the start, shape (n,)."""
         if self.start is None:
             return self.model.unloaded()
         if isinstance(self.start, Solution):
@@ -135,12 +135,12 @@ class _Task:
 
 @dataclass(frozen=True)
 class _End:
-    """Where a method stopped, before it is judged.
+    """The end of a method, before it is judged.
 
     Attributes:
         x: unknowns, shape (model.size,).
-        outcome: how the method says that it ended.
-        iterations: Newton steps that it took.
+        outcome: outcome that the method reports.
+        iterations: number of its Newton steps.
         load_factor: share of the loads that it reached.
     """
 
@@ -163,7 +163,7 @@ def solve(
     raise_on_failure: bool = False,
     estimate_error: bool = True,
 ) -> Solution:
-    """Equilibrium of a model on its discretisation, as the public ``solve`` describes it.
+    """Equilibrium of a model on its discretisation; see the public ``solve``.
 
     Raises:
         SceneError, SolveError, ValueError: as the public ``solve`` raises them.
@@ -231,7 +231,7 @@ def _in_contact(
 
     Raises:
         SceneError: contact alone would have to hold a free rod.
-        ValueError: a method, or a start, that knows of no contact.
+        ValueError: the method or the start does not support contact.
     """
     refuse_held_by_contact(model.scene)
     if method != "continuation":
@@ -246,7 +246,7 @@ def _in_contact(
 def _values_in_contact(
     model: Model, values: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None
 ) -> Mapping[str, npt.ArrayLike] | None:
-    """Inputs by name, without the forces of contacts that a solution holds: they are not given but sought."""
+    """Inputs by name, without the forces of contacts in a solution's model, which are unknowns of the solve."""
     if values is None or isinstance(values, Mapping):
         return values
     by_name = model.inputs.split(values)
@@ -255,7 +255,7 @@ def _values_in_contact(
 
 
 def noted_unstable(solution: Solution) -> Solution:
-    """A solution in contact that is wanted stable: where it is not, its message says that no other is looked for."""
+    """A solution in contact; if a stable one was requested, its message says that no other is sought."""
     if not solution.converged or solution.stable:
         return solution
     return replace(solution, message=solution.message + IN_CONTACT)
@@ -269,12 +269,12 @@ def _stacked(model: Model, values: Mapping[str, npt.ArrayLike] | npt.ArrayLike |
     """
     if values is None or isinstance(values, Mapping):
         return model.pack(values)
-    # By name once more: each input has faults of its own.
+    # Unpacked and packed by name, so that the faults of each input are found.
     return model.pack(model.inputs.split(values))
 
 
 def check_potential(model: SystemFunctions, inputs: FloatArray) -> None:
-    """Refuse to look for a stable equilibrium where the sign of an energy does not tell which is.
+    """Refuse a search for a stable equilibrium without a potential, whose second variation would decide.
 
     Raises:
         SceneError: the loads have no potential at these inputs.
@@ -285,15 +285,15 @@ def check_potential(model: SystemFunctions, inputs: FloatArray) -> None:
 
 
 def stabilised(solution: Solution, limits: ContinuationSettings, progress: Progress | None = None) -> Solution:
-    """Replace a solution that is not stable by a stable one.
+    """Replace an unstable solution by a stable one.
 
     Args:
-        solution: where a method ended.
+        solution: the end of a method.
         limits: limits of the continuation, whose Newton settings bound the final correction.
         progress: receives the share of the tries that is done.
 
     Returns:
-        a stable equilibrium; where none can be reached the solution, and its message says so.
+        a stable equilibrium; if none can be reached, the solution with a message that says so.
     """
     if solution.outcome in (Outcome.NOT_FINITE, Outcome.UNRESOLVED):
         return solution
@@ -308,7 +308,7 @@ def stabilised(solution: Solution, limits: ContinuationSettings, progress: Progr
 def _relaxed_past_no_obstacle(
     solution: Solution, limits: ContinuationSettings, progress: Progress | None
 ) -> Solution | None:
-    """The equilibrium that a solution relaxes to; None where it is not reached, or through an obstacle or a rod."""
+    """The equilibrium that a solution relaxes to; None if it is not reached, or only through an obstacle or a rod."""
     settled = relaxed(solution, limits.newton, progress)
     barriers = SmoothBarriers(solution.model)
     if settled is None or not barriers.any:
@@ -318,11 +318,11 @@ def _relaxed_past_no_obstacle(
 
 
 def is_behind(model: Model, x: FloatArray, inputs: FloatArray) -> bool | None:
-    """Whether an equilibrium is behind a smooth obstacle or a rod; None where that is not known.
+    """Whether an equilibrium is behind a smooth obstacle or a rod; None if that is unknown.
 
-    The straight way from the unloaded shape leads through it then, and as the loads vanish the rods come to another
-    shape. Where that path stalls, an equilibrium to which growing loads lead is on this side. No path leads through an
-    obstacle or a rod.
+    It is if the straight way from the unloaded shape leads through the obstacle, and the rods return to another shape
+    as the loads vanish. If that path stalls, the end of the load path decides: it is in front, since no path leads
+    through an obstacle or a rod.
     """
     barriers = SmoothBarriers(model)
     unloaded = model.unloaded()
@@ -339,7 +339,7 @@ def is_behind(model: Model, x: FloatArray, inputs: FloatArray) -> bool | None:
 def _settled_on_obstacles(
     solution: Solution, limits: ContinuationSettings, progress: Progress | None = None
 ) -> Solution:
-    """The equilibrium that a rod snaps to where its load path stalled on soft obstacles, past no obstacle."""
+    """The equilibrium to which a rod snaps, past no obstacle, where its load path stalled on soft obstacles."""
     model = solution.model
     if not SmoothBarriers(model).any or not can_relax(model) or not model.has_potential(solution.inputs):
         return solution
@@ -347,7 +347,7 @@ def _settled_on_obstacles(
 
 
 def _continuation(task: _Task) -> _End:
-    """End of a solve from a solution along its inputs, from unknowns by Newton, else along the load path."""
+    """End of a solve: from a solution along a path of inputs, from unknowns by Newton, else along the load path."""
     if isinstance(task.start, Solution):
         nearer = task.model.inputs.nearer(task.start.inputs, task.inputs)
         path = input_path(task.model, task.start.x, task.start.inputs, nearer)
@@ -368,7 +368,7 @@ def _continuation(task: _Task) -> _End:
 
 
 def _with_parameters(task: _Task, failed: ContinuationResult) -> ContinuationResult:
-    """The end of the path on which parameters change with the inputs, where it leads to one; else that which failed."""
+    """The end of a path on which parameters and inputs change, if it converges; else the failed end."""
     start = task.start
     if not isinstance(start, Solution) or task.parameters is None:
         return failed
@@ -382,24 +382,24 @@ def _with_parameters(task: _Task, failed: ContinuationResult) -> ContinuationRes
 
 
 def _corrected_guess(task: _Task) -> NewtonResult | None:
-    """Newton from unknowns that were given; None where none were, or where it strays."""
+    """End of Newton's method from given unknowns; None without any, or if it leaves their neighbourhood."""
     if task.start is None or isinstance(task.start, Solution):
         return None
-    # Zero unknowns are the unloaded rod: no guess to be tried.
+    # Zero unknowns are the unloaded rod, not a guess.
     if not np.any(task.start):
         return None
     return correct(task.model, task.inputs, task.start, task.limits.newton)
 
 
 def _rests_unloaded(task: _Task) -> bool:
-    """Whether the unloaded scene is an equilibrium of the scene: it has nothing to follow loads for."""
+    """Whether the unloaded scene is an equilibrium of the scene, so that there is no load to follow."""
     unloaded = task.model.unloaded()
     residual = column(task.model.path_residual(unloaded, task.inputs, 1.0))
     return bool(relative_norm(residual, unloaded) <= NOTHING)
 
 
 def _rootfinder(task: _Task) -> _End:
-    """CasADi's Newton at the full load; its own word on its success is not used."""
+    """CasADi's Newton at the full load; its report of success is not used."""
     newton = task.limits.newton
     options = {
         "abstol": newton.tolerance,
@@ -410,7 +410,7 @@ def _rootfinder(task: _Task) -> _End:
     finder = ca.rootfinder("finder", "newton", task.model.residual, options)
     root = finder(task.first_iterate, task.inputs)
     iterations = int(finder.stats()["iter_count"])
-    # Where the residual is small all the same, the judge says so.
+    # If the residual is small in spite of this, the judge finds out.
     return _End(root.full()[:, 0], Outcome.MAX_ITERATIONS, iterations)
 
 
@@ -437,7 +437,7 @@ def _nlpsol(task: _Task) -> _End:
     optimum = solver(x0=task.first_iterate, p=task.inputs, lbg=0, ubg=0)
     solution = optimum["x"].full()[:, 0]
     iterations = int(solver.stats()["iter_count"])
-    # Where the residual is small all the same, the judge says so.
+    # If the residual is small in spite of this, the judge finds out.
     return _End(solution, Outcome.MAX_ITERATIONS, iterations)
 
 

@@ -15,18 +15,18 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 
 ZERO = 1e-10
-"""An eigenvalue below this share of the largest, or of EI/ℓ where that is more, is zero to rounding."""
+"""Share of the largest eigenvalue, or of EI/ℓ if that is more, below which an eigenvalue is zero to rounding."""
 
 RIGID = 1e4
-"""Stiffness of a cable or a stop, in units of EI/ℓ, above which it counts as one that does not yield."""
+"""Stiffness of a cable or a stop, in units of EI/ℓ, above which it counts as rigid."""
 
 DEPENDENT = 1e-12
-"""A singular value of the constraints below this share of the largest says that one constraint repeats others."""
+"""Share of the largest singular value of the constraints below which a constraint repeats others."""
 
 
 @dataclass(frozen=True)
 class ConstrainedVariations:
-    """Which unknowns vary freely, and which equations restrict them.
+    """Unknowns that vary freely, and the equations that restrict them.
 
     Attributes:
         free: indices of the unknowns that may vary, strain coordinates and poses of floating frames, shape (n,).
@@ -51,8 +51,8 @@ def variations(model: Model) -> ConstrainedVariations:
 class Stability:
     """Second variation of the energy, in units of EI/ℓ, over the admissible variations.
 
-    Where symmetry lets the whole rod move on without energy, as a round column turns about its axis once it has
-    buckled, an eigenvalue is zero: that variation is neutral and decides nothing.
+    If symmetry lets the whole rod move without energy, as a buckled round column turns about its axis, an eigenvalue is
+    zero: its variation is neutral and does not decide.
 
     Attributes:
         smallest_eigenvalue: smallest eigenvalue of the symmetric part of the scaled Jacobian.
@@ -72,7 +72,7 @@ class Stability:
 
     @property
     def stable(self) -> bool:
-        """Whether every admissible variation costs energy, those apart that are neutral."""
+        """Whether every admissible variation costs energy, except neutral ones."""
         return not self.negative
 
 
@@ -80,8 +80,8 @@ def second_variation(jacobian: FloatArray, allowed: ConstrainedVariations) -> St
     """Test an equilibrium by the eigenvalues of its second variation.
 
     Args:
-        jacobian: of the whole system at the equilibrium, (n + m)×(n + m).
-        allowed: what varies; only variations in the null space of the linearised constraints are admissible.
+        jacobian: Jacobian of the whole system at the equilibrium, (n + m)×(n + m).
+        allowed: free unknowns; only variations in the null space of the linearised constraints are admissible.
     """
     return stability_of(admissible_eigenvalues(jacobian, allowed))
 
@@ -89,33 +89,33 @@ def second_variation(jacobian: FloatArray, allowed: ConstrainedVariations) -> St
 def admissible_eigenvalues(jacobian: FloatArray, allowed: ConstrainedVariations) -> FloatArray:
     """Eigenvalues of the second variation over the admissible variations, ascending.
 
-    Each unknown counts in the energy unit of the rod or frame that it belongs to. A frame whose quaternion changes its
-    length, which moves nothing, has the eigenvalue 2 there.
+    Each unknown counts in the energy unit of its rod or frame. The norm of a frame's quaternion, which moves nothing,
+    has the eigenvalue 2.
 
     Args:
         jacobian: as in :func:`second_variation`.
-        allowed: as there.
+        allowed: as in :func:`second_variation`.
     """
     return admissible_spectrum(jacobian, allowed)[0]
 
 
 def admissible_spectrum(jacobian: FloatArray, allowed: ConstrainedVariations) -> tuple[FloatArray, FloatArray]:
-    """Eigenvalues of the second variation over the k admissible variations, ascending, and those variations, n×k.
+    """Ascending eigenvalues of the second variation over the k admissible variations, and these variations, n×k.
 
     Args:
         jacobian: as in :func:`second_variation`.
-        allowed: as there.
+        allowed: as in :func:`second_variation`.
     """
     block = np.ix_(allowed.free, allowed.free)
     yielding = _yielding(jacobian, allowed)
     held = np.setdiff1d(allowed.held, yielding)
-    # A cable that is slack, or that stretches, and an elastic stop follow the variations: they are eliminated.
+    # Slack or elastic cables and elastic stops follow the variations: they are eliminated.
     pull = jacobian[np.ix_(allowed.free, yielding)] / np.diagonal(jacobian)[yielding]
     hessian = jacobian[block] - pull @ jacobian[np.ix_(yielding, allowed.free)]
     constraints = jacobian[np.ix_(held, allowed.free)]
     largest_unit = allowed.units.max(initial=0.0)
     roots = np.sqrt(allowed.units / largest_unit)
-    # Rods of one energy unit need no scaling, and keep their digits.
+    # Rods with one energy unit need no scaling, which would cost digits.
     if len(set(allowed.units)) > 1:
         hessian = roots[:, None] * hessian / roots
         constraints = constraints / roots
@@ -124,9 +124,9 @@ def admissible_spectrum(jacobian: FloatArray, allowed: ConstrainedVariations) ->
         basis = _null_space(constraints)
         hessian = basis.T @ hessian @ basis
     if not hessian.size:
-        # Constraints leave nothing to vary.
+        # The constraints leave no admissible variation.
         return np.zeros(0), np.zeros((len(allowed.free), 0))
-    # The symmetric part decides; at an equilibrium under loads with a potential only rounding is left out.
+    # The symmetric part decides; at an equilibrium under loads with a potential the rest is rounding.
     symmetric = (hessian + hessian.T) / 2
     eigenvalues, vectors = np.linalg.eigh(symmetric)
     admissible = basis @ vectors / roots[:, None]
@@ -134,7 +134,7 @@ def admissible_spectrum(jacobian: FloatArray, allowed: ConstrainedVariations) ->
 
 
 def _yielding(jacobian: FloatArray, allowed: ConstrainedVariations) -> npt.NDArray[np.int64]:
-    """Indices of the held unknowns that their own equations give a finite stiffness, or none."""
+    """Indices of the held unknowns whose own equations are elastic or slack rather than rigid."""
     gradients = np.linalg.norm(jacobian[np.ix_(allowed.held, allowed.free)], axis=1)
     pulls = np.linalg.norm(jacobian[np.ix_(allowed.free, allowed.held)], axis=0)
     own = np.abs(np.diagonal(jacobian)[allowed.held])
@@ -142,7 +142,7 @@ def _yielding(jacobian: FloatArray, allowed: ConstrainedVariations) -> npt.NDArr
 
 
 def _null_space(constraints: FloatArray) -> FloatArray:
-    """Orthonormal basis of the variations that keep constraints, one a column."""
+    """Orthonormal basis of the variations that keep constraints, one in each column."""
     _, singular, rows = np.linalg.svd(constraints)
     independent = singular > DEPENDENT * singular[0]
     rank = int(np.sum(independent))
@@ -157,7 +157,7 @@ def restricted(
     Args:
         jacobian: as in :func:`second_variation`.
         held: rows of the linearised constraints, shape (n + m,) each.
-        allowed: as there.
+        allowed: as in :func:`second_variation`.
     """
     size = len(jacobian)
     bordered = np.zeros((size + len(held), size + len(held)))

@@ -1,4 +1,4 @@
-"""States that no rod can be in, as :mod:`cosserat_casadi.model.strain_margins` measures them."""
+"""Refusal of states that no rod can be in; :mod:`cosserat_casadi.model.strain_margins` has their margins."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from cosserat_casadi.model.strain_margins import APART, VANISHED, StrainMargin, 
 from cosserat_casadi.numerics.outcome import Outcome
 
 JUDGED = (Outcome.CONVERGED, Outcome.LOAD_STALLED)
-"""Ends that a limit of the strains explains, or makes worthless."""
+"""Outcomes that a limit of the strains explains, or invalidates."""
 
 
 class BeyondLimit(NamedTuple):
-    """The first of several states in which strains are beyond a limit.
+    """The first of several states with strains beyond a limit.
 
     Attributes:
-        state: its number.
-        margin: which limit that is.
+        state: index of the state.
+        margin: the margin that is exceeded.
     """
 
     state: int
@@ -30,13 +30,13 @@ class BeyondLimit(NamedTuple):
 
     @property
     def word(self) -> str:
-        """Name of the outcome, which solves, paths and motions share."""
+        """Name of the outcome, common to solves, paths and motions."""
         words = {"path": "PATH_VANISHED", "plane": "OUT_OF_PLANE", APART: "UNRESOLVED"}
         return words.get(self.margin.kind, "BEYOND_MATERIAL")
 
     @property
     def whose(self) -> str:
-        """Whose limit it is, as the beginning of a sentence."""
+        """The owner of the limit, as the beginning of a sentence."""
         kind, name = self.margin
         if kind == "plane":
             return f"It is {name}"
@@ -48,13 +48,13 @@ class BeyondLimit(NamedTuple):
 def first_beyond(
     model: Model, x: FloatArray, inputs: FloatArray, margins_in_c: ca.Function | None = None
 ) -> BeyondLimit | None:
-    """The first state in which strains are beyond a limit; None where they are within all in every state.
+    """The first state with strains beyond a limit; None if every state is within all limits.
 
     Args:
         model: the discrete scene.
         x: unknowns, shape (k, model.size).
         inputs: stacked inputs, shape (k, model.inputs.size).
-        margins_in_c: the model's margins in machine code; None where they are not.
+        margins_in_c: the model's margins as compiled code, or None.
     """
     if model.strain_margins is None or not len(x):
         return None
@@ -68,19 +68,19 @@ def first_beyond(
 
 
 def within_limits(model: Model, x: FloatArray, inputs: FloatArray, outcome: Outcome) -> tuple[Outcome, str]:
-    """Outcome of a solve and its sentence, after a look at the limits of its strains.
+    """Outcome of a solve and its sentence, after a test of the limits of its strains.
 
     Args:
         model: the solved model.
         x: where the method stopped, shape (model.size,).
         inputs: stacked inputs, shape (model.inputs.size,).
-        outcome: how it has ended but for the limits.
+        outcome: outcome of the solve without the limits.
     """
     if outcome not in JUDGED:
         return outcome, outcome.value
     beyond = first_beyond(model, x[None, :], inputs[None, :])
     if beyond is None or beyond.margin.kind == APART:
-        # Where sections lie apart the error is not known, and is told so.
+        # Sections that lie apart are not a limit here: the error estimate says that the error is unknown.
         return outcome, outcome.value
     told = Outcome[beyond.word]
     return told, f"{told.value} {beyond.whose}."

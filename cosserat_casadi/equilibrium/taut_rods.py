@@ -1,4 +1,4 @@
-"""Rods without extension that supports hold straight: loads across them have no equilibrium."""
+"""Inextensible rods that supports hold straight: lateral loads have no equilibrium."""
 
 from __future__ import annotations
 
@@ -14,26 +14,26 @@ CLOSED = 1e-9
 """Residual of constraints, relative to the length of the rods, below which they are closed."""
 
 STRAIGHT = 1e-9
-"""Share by which the ends of a straight rod may be nearer to each other than along its sections."""
+"""Relative difference of the length along sections and the distance of the ends up to which a rod is straight."""
 
 SECTIONS = 9
-"""Sections of a rod that tell whether it is straight."""
+"""Number of sections of a rod that decide whether it is straight."""
 
 DEPENDENT = 1e-9
-"""Share of the largest singular value below which one counts as zero."""
+"""Share of the largest singular value below which a singular value counts as zero."""
 
 TAUT = (
     " The supports hold a rod that cannot extend as far apart as it is long: it stays straight, and loads across it "
     'have no equilibrium. Admit its extension (strain = "reissner"), or hold its ends nearer to each other.'
 )
-"""Sentence in the message of a solve that this stopped."""
+"""Sentence in the message of a solve that fails for this reason."""
 
 
 def held_taut(model: Model, inputs: FloatArray) -> bool:
-    """Whether the unloaded rods meet their supports, and no small change of shape moves them in a direction held there.
+    """Whether the unloaded rods meet their supports, and no small change of shape moves them in a held direction.
 
     Args:
-        model: of a scene with supports; one with bodies or without supports has no such rod.
+        model: model of a scene; scenes with bodies or without supports have no such rods.
         inputs: stacked inputs, shape (model.inputs.size,).
     """
     discrete = model.discrete
@@ -43,7 +43,7 @@ def held_taut(model: Model, inputs: FloatArray) -> bool:
     unloaded = model.unloaded()
     if np.abs(column(model.path_residual(unloaded, inputs, 1.0))[held]).max() > CLOSED:
         return False
-    # On few modes a curved rod may be locked too, which more modes mend.
+    # With few modes a curved rod may be locked too, which more modes mend.
     stiff = [rod.name for rod in model.scene.rods if not set(rod.admitted) & SHEAR_AND_EXTENSION]
     if not any(_is_straight(model, unloaded, inputs, name) for name in stiff):
         return False

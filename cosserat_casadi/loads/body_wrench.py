@@ -1,4 +1,4 @@
-"""Force and moment on a rigid body, at a point of it, dead or turning with the body."""
+"""Force and moment at a point of a rigid body, dead or turning with the body."""
 
 from __future__ import annotations
 

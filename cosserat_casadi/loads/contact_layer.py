@@ -4,30 +4,30 @@ With the gap g = d(r) − ρ between a section of radius ρ and the obstacle, th
 
     u = k (w − g)₊⁴ / (12 w²),    f = −du/dg = k (w − g)₊³ / (3 w²),    df/dg = −k at g = 0,
 
-per length of the rod. From the gap w on there is no force; where the gap is zero it is k w/3. Energy, force and
-stiffness are continuous, and so is the derivative of the stiffness but for its kink at g = w.
+per length of the rod. The force is zero for g ≥ w, and k w/3 at zero gap. Energy, force and stiffness are continuous,
+and so is the derivative of the stiffness, except for its kink at g = w.
 
 In motion the force is f (1 − δ ġ): the power δ f ġ² that it dissipates is never negative. K. H. Hunt and F. R. E.
-Crossley, J. Appl. Mech. 42 (1975) 440. It pulls only where a rod leaves faster than 1/δ.
+Crossley, J. Appl. Mech. 42 (1975) 440. It pulls only on a rod that leaves faster than 1/δ.
 
-Coulomb's friction acts on the point of the section that touches, ρ from its centre: μ times the force along the normal,
-against the way u along the surface and over a regularised length of it, as long as the section is pushed.
+Coulomb's friction acts at the touching point of the section, ρ from its centre: μ times the normal force, times −u over
+a regularised length of the displacement or velocity u along the surface, as long as the section is pushed.
 
 In motion u is the velocity, and the length √(u² + s²): far above the slip speed s that is Coulomb's law to the share
-½ (s/u)²; what Coulomb's law lets stick creeps, slower than s until it is close to slipping.
+½ (s/u)²; a section that sticks by Coulomb's law creeps, slower than s until it is close to slipping.
 
-Along a path u is how far the layer has been dragged: the drag that remained at the last point of the path, and the
-displacement of the point that touched there since. The length is |u| or the reach a = μ f/k, whichever is more: a
-spring of the stiffness k that slips at μ f, and afterwards is dragged by a. That is the return map of plasticity
-without hardening: F · Δr ≥ Δ(½ k u²), so that energy only leaves.
+Along a path u is the drag of the layer: the drag at the last point of the path plus the displacement since then of the
+point that touched there. The length is |u| or the reach a = μ f/k, whichever is larger: a spring of the stiffness k
+that slips at μ f, and then stays dragged by a. That is the return map of plasticity without hardening: F · Δr ≥ Δ(½ k
+u²), so that energy only leaves.
 
-Along the tangent of the rod, against it and across it the coefficient may be another. A single equilibrium, which
-remembers nothing, has no friction.
+The coefficient may differ along the tangent of the rod, against it and across it. A single equilibrium, which has no
+history, has no friction.
 
 A disk of radius R and thickness h, square to its rod with the tangent t, reaches as far as R √(1 − (n·t)²) + h/2 |n·t|
-along the normal n, its corners rounded; its gap is d(r) less that. Before a plane that is exact. Before a ball it is
-less than the true one, by R² (n·t)²/2D at most, D the distance between the centres.
-It is pressed as a stretch of rod of its diameter would be, and force and moment derive from one energy.
+along the normal n, its corners rounded; its gap is d(r) less that. For a plane this gap is exact. For a ball it is
+smaller than the true gap, by R² (n·t)²/2D at most, D the distance between the centres. The force on a disk is that on a
+stretch of rod as long as its diameter, and force and moment derive from one energy.
 """
 
 from __future__ import annotations
@@ -49,23 +49,23 @@ from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.rod.section_kernel import wrench_of_energy
 
 STANDING = 1e-3
-"""Cosine of a rod to the surface below which its tangent along the surface fades."""
+"""Norm of the tangent's part along the surface below which the direction of a rod on the surface fades."""
 
 HISTORY_FIELD = "history"
-"""Input of the numbers that friction remembers at the nodes."""
+"""Name of the input with the history of friction at the nodes."""
 
 HISTORY = 12
-"""Numbers that friction remembers of a section: a position, m, and a rotation matrix, column after column."""
+"""Count of numbers in the history of a section: a position, m, and a rotation matrix, column after column."""
 
 GROWTH_INSIDE = 2
-"""Power of the load factor by which a layer grows where the unloaded rod is inside the obstacle, or may be."""
+"""Power of the load factor by which a layer grows if the unloaded rod is, or may be, inside the obstacle."""
 
 NOTHING = 1e-9
-"""Way along an obstacle, in widths, that counts as none."""
+"""Displacement along an obstacle, in widths, that counts as zero."""
 
 
 class ContactLayer(ObstacleLoadRecord):
-    """An obstacle with a width before a rod, a disk on it, or a body that is a ball; no scene file names this load."""
+    """The push of an obstacle with a width on a rod, on a disk of it, or on a body; no scene file names this load."""
 
     kind: Literal["contact_layer"] = "contact_layer"
     stiffness: float
@@ -75,11 +75,11 @@ class ContactLayer(ObstacleLoadRecord):
 
     @property
     def takes_energy(self) -> bool:
-        """Whether the layer takes energy in motion."""
+        """Whether the layer dissipates energy in motion."""
         return bool(self.obstacle.damping > 0.0 or self.obstacle.rubs)
 
     def widened(self, ratio: float) -> ContactLayer:
-        """The layer with a width so many times as large, which pushes as hard where the gap is zero."""
+        """The layer with its width times a ratio; the force at zero gap stays the same."""
         if ratio == 1.0:
             return self
         obstacle = self.obstacle.model_copy(update={"width": ratio * self.obstacle.width})
@@ -88,27 +88,26 @@ class ContactLayer(ObstacleLoadRecord):
 
 @final
 class ContactLayerLoad(ObstacleLoad[ContactLayer]):
-    """k (w − g)₊³ / (3 w²) along the normal of the obstacle: per length of a rod, or on a body, where k is in N/m.
+    """Force k (w − g)₊³ / (3 w²) along the normal of the obstacle, per length of a rod, or on a body with k in N/m.
 
-    On a disk 2 R k stands for k.
+    For a disk k is replaced by 2 R k.
     """
 
     record = ContactLayer
     nodal = HISTORY_FIELD
 
     def growth(self, load: ContactLayer, site: Site) -> int:
-        """Power of the load factor: 0 where the unloaded rod is not in the layer, 1 in it, 2 inside the obstacle.
+        """Power of the load factor: 0 for an unloaded rod outside of the layer, 1 in it, 2 inside the obstacle.
 
-        A layer that grew faster than the other loads would give way to them at small shares, and let a rod through.
-        But a straight rod in a bent lumen lies many widths outside: it is led in by a force that is next to nothing at
-        first.
+        A layer that grew more slowly at first than the other loads would let a rod through. But a straight rod in a
+        bent lumen lies many widths deep in the obstacle: a force that is nearly zero at first leads it in.
         """
         if load.obstacle.body is not None:
             return GROWTH_INSIDE
         try:
             positions = site.unloaded_position
         except SceneError:
-            # Parameters move the unloaded rod.
+            # The unloaded position is an expression if parameters move the unloaded rod.
             return GROWTH_INSIDE
         reach = section_radii(site.rod, site.X) if load.at is None else np.array([load.radius + load.thickness])
         if any_symbolic([positions, reach, load.obstacle.width]):
@@ -120,16 +119,16 @@ class ContactLayerLoad(ObstacleLoad[ContactLayer]):
         return 1 if gap < load.obstacle.width else 0
 
     def energy(self, load: ContactLayer, section: Section, values: Mapping[str, Matrix]) -> Matrix | None:
-        """The energy k (w − g)₊⁴ / (12 w²), J/m, or J of a body or a disk; None where friction is part of the force."""
+        """The energy k (w − g)₊⁴ / (12 w²), J/m, or J of a body or a disk; None with friction."""
         return None if _remembers(section) else _energy(load, section)
 
     def wrench(self, load: ContactLayer, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
-        """Force, N/m, or N on a body or a disk, and the moment of friction, or on a disk of all, about the centre."""
+        """Force, N/m, or N on a body or a disk, and moment about the centre, by friction, on a disk by all forces."""
         if load.at is not None:
             return self._on_disk(load, section)
         normal = _normal(load, section)
         pressing = _pressing(load, section)
-        # At rest the velocity stores nothing, and nothing is added.
+        # At rest the velocity has no entries, and damping adds no instruction.
         if load.takes_energy and _moves(section) and load.obstacle.damping > 0.0:
             pressing = pressing * (1 - load.obstacle.damping * ca.dot(normal, section.velocity))
         drag = _drag(load, section, normal, ca.fmax(pressing, 0.0))
@@ -139,11 +138,11 @@ class ContactLayerLoad(ObstacleLoad[ContactLayer]):
         return pressing * normal + rubbing, ca.cross(_touching(load, section, normal), rubbing)
 
     def remembers(self, load: ContactLayer) -> int:
-        """Size of the history: the place at which the layer would not be dragged, and the rotation of the section."""
+        """Size of the history: the position with zero drag, and the rotation of the section."""
         return HISTORY if load.body is None and load.at is None and load.obstacle.rubs else 0
 
     def rubbing(self, load: ContactLayer, section: Section) -> Rubbing:
-        """The section after an increment, whether it slips, and the force of friction."""
+        """History of the section after an increment, slip, and force of friction."""
         normal = _normal(load, section)
         pressing = _pressing(load, section)
         drag = _drag(load, section, normal, pressing)
@@ -157,7 +156,7 @@ class ContactLayerLoad(ObstacleLoad[ContactLayer]):
         return Rubbing(ca.vertcat(origin, ca.vec(section.rotation)), slip, friction)
 
     def _on_disk(self, load: ContactLayer, section: Section) -> tuple[Matrix, Matrix]:
-        """Force and moment of the energy, with what a disk that moves feels at the point that touches."""
+        """Force and moment on a disk from the energy, with damping and friction at the touching point."""
         obstacle = load.obstacle
         force, moment = wrench_of_energy(_energy(load, section), section.position, section.rotation)
         if not (load.takes_energy and _moves(section)):
@@ -175,7 +174,7 @@ class ContactLayerLoad(ObstacleLoad[ContactLayer]):
         return force + taken, moment + ca.cross(touching, taken)
 
     def data(self, load: ContactLayer, site: Site) -> Numbers:
-        """Radius of the sections, m, and their history; of a disk nothing."""
+        """Radius of the sections, m, and their history; empty for a disk."""
         if load.at is not None:
             return super().data(load, site)
         radii = stacked_rows([section_radii(site.rod, site.X)])
@@ -186,13 +185,13 @@ class ContactLayerLoad(ObstacleLoad[ContactLayer]):
 
 @dataclass(frozen=True)
 class _Drag:
-    """How the point of a section that touches has moved along an obstacle.
+    """Motion along an obstacle of the touching point of a section.
 
     Attributes:
-        way: 3×1: a velocity, m/s, or how far the layer is dragged, m.
+        way: velocity, m/s, or drag of the layer, m, 3×1.
         length: its regularised length, 1×1.
-        reach: slip speed, m/s, or how far the layer is dragged where it slips, m.
-        blur: way along the rod within which forward and back are not told apart, m/s or m.
+        reach: slip speed, m/s, or drag of a slipping layer, m.
+        blur: width of the transition between forward and back along the rod, m/s or m.
     """
 
     way: Matrix
@@ -207,7 +206,7 @@ class _Drag:
 
 
 def _drag(load: ContactLayer, section: Section, normal: Matrix, pressing: Matrix) -> _Drag | None:
-    """How a section has moved; None where nothing rubs, as at rest without memory."""
+    """Motion of a section for friction; None without friction, as at rest without memory."""
     in_motion = load.takes_energy and load.obstacle.rubs and _moves(section)
     if not (in_motion or _remembers(section)):
         return None
@@ -230,10 +229,10 @@ def _friction(load: ContactLayer, section: Section, normal: Matrix, pressing: Ma
 
     Args:
         load: the push.
-        section: of the rod.
-        normal: of the obstacle, 3×1.
-        pressing: force along it, not negative, N/m.
-        drag: how the section has moved along the obstacle.
+        section: a section of the rod.
+        normal: normal of the obstacle, 3×1.
+        pressing: force along the normal, not negative, N/m.
+        drag: motion of the section along the obstacle.
     """
     direction = along_surface(section.rotation[:, 2], normal)
     weighted = weighted_way(load.obstacle.coefficients, drag.way, direction, drag.blur)
@@ -246,18 +245,18 @@ def _friction(load: ContactLayer, section: Section, normal: Matrix, pressing: Ma
 def weighted_way(
     coefficients: tuple[float, float, float], way: Matrix, direction: Matrix, blur: Matrix | float
 ) -> Matrix:
-    """A way along an obstacle times the coefficient of friction of each of its parts, 3×1.
+    """A motion along an obstacle, 3×1, with each of its parts times the coefficient of friction of its direction.
 
     Args:
-        coefficients: along the rod, back, and across it.
-        way: how the touching point has moved, or moves, along the surface, 3×1.
+        coefficients: coefficients of friction along the rod, back, and across it.
+        way: drag, or velocity, of the touching point along the surface, 3×1.
         direction: part of the tangent of the rod along the surface, 3×1.
-        blur: way along the rod within which forward and back are not told apart.
+        blur: width of the transition between forward and back along the rod.
     """
     along, back, across = coefficients
     if along == back == across:
         return across * way
-    # A rod that stands on the surface slides in no direction of its own.
+    # A rod that stands on the surface has no direction along it.
     direction = direction / ca.sqrt(ca.sumsqr(direction) + STANDING**2)
     forward = ca.dot(direction, way)
     share = forward / ca.sqrt(forward**2 + blur**2)
@@ -276,12 +275,12 @@ def _remembers(section: Section) -> bool:
 
 
 def _is_known(section: Section) -> Matrix:
-    """1 for a section that has a history, 0 before it has one, when its rotation is no rotation; 1×1."""
+    """1 for a section with a history, 0 before there is one, when the stored rotation is zero; 1×1."""
     return ca.sumsqr(section.data[4:]) / 3
 
 
 def along_surface(vector: Matrix, normal: Matrix) -> Matrix:
-    """The part of a vector across the normal, 3×1."""
+    """The part of a vector orthogonal to the normal, 3×1."""
     return vector - ca.dot(normal, vector) * normal
 
 
@@ -322,7 +321,7 @@ def _stiffness(load: ContactLayer) -> Matrix | float:
 
 
 def _support(load: ContactLayer, section: Section, normal: Matrix) -> tuple[Matrix, Matrix]:
-    """How far a disk reaches against the normal, 1×1, m, and from its centre to where it does, 3×1, m."""
+    """Reach of a disk against the normal, 1×1, m, and vector from its centre to the point that touches, 3×1, m."""
     return disk_reach(normal, section.rotation[:, 2], load.radius, load.thickness)
 
 
@@ -344,7 +343,7 @@ def _gap(load: ContactLayer, section: Section) -> Matrix:
 
 
 def _depth(load: ContactLayer, section: Section) -> Matrix:
-    """(w − g)₊, m: how deep a section is in the layer in front of the obstacle."""
+    """Depth (w − g)₊ of a section in the layer, m."""
     depth: Matrix = ca.fmax(load.obstacle.width - _gap(load, section), 0.0)
     return depth
 

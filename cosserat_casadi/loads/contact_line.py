@@ -1,7 +1,7 @@
 """The force per length of an obstacle that a stretch of a rod lies on: energy −λ(X) d(r) per length.
 
-λ is a polynomial along the stretch, given by its Legendre coefficients. As with contact at a point, it is no input of
-the scene but follows from the contact.
+λ is a polynomial along the stretch, given by its Legendre coefficients. As the force of contact at a point, it is not
+an input of the scene but follows from the contact.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from cosserat_casadi.scene.input_fields import InputField
 
 
 class ContactLine(ObstacleLoadRecord):
-    """An obstacle that a stretch of a rod lies on."""
+    """Exact contact of a stretch of a rod with an obstacle."""
 
     inputs: ClassVar[Mapping[str, InputField]] = {"force": InputField("N/m", 1, polynomial=True)}
 

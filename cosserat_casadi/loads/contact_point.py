@@ -1,8 +1,8 @@
 """The force of an obstacle on one section, or on a body that is a ball or a disk: energy −N d(r) with d the distance.
 
 So the force is N along the normal. It acts through the centre of the section or of the ball: without friction it has no
-moment about it. A disk reaches further one way than another: its energy is −N (d − reach), and has a moment. N is no
-input of the scene but follows from the contact, see equilibrium/contact; no scene file names this load.
+moment about it. The reach of a disk depends on the direction: its energy is −N (d − reach), and has a moment. N is not
+an input of the scene but follows from the contact, see equilibrium/contact; no scene file names this load.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from cosserat_casadi.scene.input_fields import InputField
 
 
 class ContactPoint(ObstacleLoadRecord):
-    """An obstacle that touches one section of a rod, or a body; radius and thickness belong to a disk."""
+    """Exact contact of an obstacle with one section of a rod, or a body; radius and thickness belong to a disk."""
 
     inputs: ClassVar[Mapping[str, InputField]] = {"force": InputField("N", 1, lower=0.0)}
 

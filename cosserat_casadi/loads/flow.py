@@ -2,7 +2,7 @@
 
 Drag is Taylor's for long bodies in a stream at any angle, −½ ρ d (C_n |v_n| v_n + π C_t |v| v_t) with the velocity v of
 the section relative to the stream and its parts across and along the tangent: G. I. Taylor, Proc. R. Soc. A 214 (1952)
-158. A speed is √(v·v + ε²), so that its derivatives are finite where nothing moves. Slow flow of viscous fluids adds
+158. A speed is √(v·v + ε²), so that its derivatives are finite at rest. Slow flow of viscous fluids adds
 −ζ_n v_n − ζ_t v_t, resistive force theory: J. Gray and G. J. Hancock, J. Exp. Biol. 32 (1955) 802.
 
 Fluid that moves along has the kinetic energy ½ m_a |ṙ − (t·ṙ) t|² per length, as along slender bodies in a fluid at
@@ -39,7 +39,7 @@ class FlowLoad(Load[scenes.Flow]):
     uniform = True
 
     def acts_on(self, load: scenes.Flow, rod: str) -> bool:
-        """Every rod, unless the load names some."""
+        """Whether the load acts on this rod: every rod, unless the load names some."""
         return load.acts_on_rod(rod)
 
     def wrench(self, load: scenes.Flow, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
@@ -59,7 +59,7 @@ class FlowLoad(Load[scenes.Flow]):
             force = force - load.normal_resistance * across - load.tangential_resistance * along
         if load.gravity is not None:
             force = force - load.density * section.data[1] * ca.vertcat(*load.gravity)
-        # At rest nothing is accelerated.
+        # At rest there is no added mass.
         if section.acceleration.nnz() and not is_zero(load.added_mass):
             added = load.added_mass * load.density * section.data[1]
             inertia, turning = _added_mass(section)
@@ -76,7 +76,7 @@ class FlowLoad(Load[scenes.Flow]):
             assert site.rod.diameter is not None, "the rules of the scene ask for one"
             diameter = site.rod.diameter(site.X)
         displaced = np.pi / 4 * diameter**2
-        # A tube displaces what a solid rod would, a rod that is not round its own area.
+        # A tube displaces as much as a solid rod; a rod that is not round displaces the area of its section.
         if site.rod.diameter is None and site.rod.area is not None:
             displaced = site.rod.area(site.X)
         return stacked_rows([repeated(diameter, site.X.shape[0]), repeated(displaced, site.X.shape[0])])
@@ -88,7 +88,7 @@ def _speed(velocity: Matrix) -> Matrix:
 
 
 def _added_mass(section: Section) -> tuple[Matrix, Matrix]:
-    """Force and moment of the fluid that moves along, 3×1 each, over minus its mass per length."""
+    """Force and moment of the added mass, 3×1 each, over minus the added mass per length."""
     tangent = section.rotation[:, 2]
     turning = ca.cross(section.angular_velocity, tangent)
     along = ca.dot(tangent, section.velocity)

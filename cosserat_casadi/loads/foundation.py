@@ -32,7 +32,7 @@ class FoundationLoad(Load[scenes.Foundation]):
         return ca.dot(values["stiffness"], displacement**2) / 2
 
     def data(self, load: scenes.Foundation, site: Site) -> Numbers:
-        """Where the springs are tied to, m, and in the axes of sections their rotation, column after column."""
+        """Unloaded positions, m, to which the springs are tied; for section axes also the rotations, by column."""
         if load.curve is None:
             tied_to: Numbers = site.unloaded_position
         else:

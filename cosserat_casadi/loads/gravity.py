@@ -1,4 +1,4 @@
-"""Weight: linear density times acceleration, a dead force per length, f̄ of report (1.17); on bodies mass times it."""
+"""Weight: linear density times acceleration, a dead force per length, f̄ of report (1.17); mass times it on bodies."""
 
 from __future__ import annotations
 
@@ -23,23 +23,23 @@ class GravityLoad(Load[scenes.Gravity]):
     per_mass = True
 
     def acts_on(self, load: scenes.Gravity, rod: str) -> bool:
-        """Every rod, unless the load names some rods or bodies."""
+        """Whether the load acts on this rod: every rod, unless the load names some rods or bodies."""
         return bool(load.acts_on_rod(rod))
 
     def on_body(self, load: scenes.Gravity, body: scenes.Body) -> BodyPoint | None:
-        """The body's mass, at its centre."""
+        """The load on a body: its mass as factor, at its centre of mass."""
         if is_zero(body.mass) or not load.acts_on_body(body.name):
             return None
         return BodyPoint(body.centre_of_mass, body.mass)
 
     def wrench(self, load: scenes.Gravity, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
         """The acceleration, a force per mass."""
-        # Mass comes in by the profile of a rod and the factor of a body.
+        # The profile of a rod and the factor of a body multiply it by the mass.
         return values["acceleration"], ca.DM(3, 1)
 
     def profiles(self, load: scenes.Gravity, rod: RodProperties, X: Numbers, columns: int) -> Numbers:
         """Mass per length, kg/m."""
-        # A rod without mass is not weighed, and costs nothing.
+        # A rod without mass has no weight, and costs nothing.
         if rod.linear_density is None:
             return np.zeros((1, X.shape[0]))
         density = rod.linear_density(X)

@@ -1,9 +1,9 @@
-"""Base class of loads: a load is a kind of table of the scene, as the wrench on one section of a rod or on a body.
+"""Base class of loads: a kind of load gives the wrench of its table on one section of a rod or on a body.
 
 A member is one file and one line of the registry. It gives :meth:`Load.wrench`, a small function of a section, or
-:meth:`Load.energy`, of which the wrench is the derivative. What the mechanics do with it follows from its structure: a
-wrench that does not depend on the pose is coefficients times known profiles, dead or follower as its axes say, and any
-other is evaluated section by section and differentiated by CasADi. Whether it has a potential follows in the same way.
+:meth:`Load.energy`, of which the wrench is the derivative. Its treatment by the mechanics follows from its structure: a
+wrench that does not depend on the pose is coefficients times known profiles, dead or follower by its axes, and any
+other is evaluated section by section and differentiated by CasADi. The structure also tells whether it has a potential.
 """
 
 from __future__ import annotations
@@ -49,10 +49,10 @@ class Arrow:
     """An arrow of a picture.
 
     Attributes:
-        start: where it begins, world axes, shape (3,), m.
+        start: start of the arrow, world axes, shape (3,), m.
         vector: force, moment or force per length, world axes, shape (3,), in the unit of its sort.
         sort: kind of vector that the arrow stands for.
-        label: its entry in the legend; empty for one that another arrow speaks for.
+        label: its entry in the legend; empty if another arrow has the entry.
     """
 
     start: FloatArray
@@ -75,7 +75,7 @@ UnloadedPoses = tuple[Numbers, Numbers]
 
 
 AT_REST = ca.DM(3, 1)
-"""Rate of what does not move."""
+"""Rate of a section at rest: zeros without entries."""
 
 
 @dataclass(frozen=True)
@@ -86,9 +86,10 @@ class Section:
         position: 3×1, world axes, m.
         rotation: 3×3, world_R_section, or world_R_body.
         data: the numbers that :meth:`Load.data` gives for this section, d×1.
-        velocity: of its centre in the world, 3×1, m/s; at rest zeros that store nothing, as all that follow.
+        velocity: velocity of its centre, world axes, 3×1, m/s; at rest this and the other rates are zeros without
+            entries.
         angular_velocity: 3×1, rad/s.
-        acceleration: of its centre, 3×1, m/s².
+        acceleration: acceleration of its centre, 3×1, m/s².
         angular_acceleration: 3×1, rad/s².
     """
 
@@ -106,10 +107,10 @@ class Site:
     """Sections of a rod before it is loaded.
 
     Attributes:
-        rod: what the rod is made of.
-        X: abscissae of the sections, shape (k,), numbers, or expressions where a parameter moves elements.
-        unloaded: poses of the sections in the unloaded scene, found when they are asked for.
-        nodal: numbers of the sections from the input of the load that holds such, h×k; None without.
+        rod: properties of the rod.
+        X: abscissae of the sections, shape (k,), numbers, or expressions if a parameter moves elements.
+        unloaded: function that returns the poses of the sections in the unloaded scene.
+        nodal: values at the sections of the load's nodal input, h×k; None without such an input.
     """
 
     rod: RodProperties
@@ -130,11 +131,11 @@ class Site:
 
 @dataclass(frozen=True)
 class BodyPoint:
-    """How a load acts on a rigid body.
+    """Application point and factor of a load on a rigid body.
 
     Attributes:
-        position: the point that the force acts on, in the axes of the body, m.
-        factor: what force and moment are multiplied by.
+        position: the application point of the force, in the axes of the body, m.
+        factor: factor on force and moment.
     """
 
     position: tuple[Scalar, Scalar, Scalar] = (0.0, 0.0, 0.0)
@@ -143,11 +144,11 @@ class BodyPoint:
 
 @dataclass(frozen=True)
 class Rubbing:
-    """How a section rubs on an obstacle.
+    """Friction of a section on an obstacle.
 
     Attributes:
-        history: numbers of the section that the next point of a path is counted from, h×1.
-        slip: how it has moved, over the way, or the speed, from which on it slips, 1×1; −1 where nothing presses it.
+        history: history of the section for the next point of a path, h×1.
+        slip: drag, or speed, over the value at which it slips, 1×1; −1 for a section that is not pressed.
         friction: force of friction, N/m, 3×1.
     """
 
@@ -159,16 +160,16 @@ class Rubbing:
 class Load(Kind, ABC, Generic[RecordType]):
     """One kind of load.
 
-    The methods take ``load``, the frozen record of the scene. ``values`` holds each input as a 3×k or 1×1 matrix,
-    symbolic or numeric; an entry that is zero for good is not stored in it.
+    The methods take ``load``, the frozen record of the scene. ``values`` has each input as a 3×k or 1×1 matrix,
+    symbolic or numeric; entries that are always zero are not stored.
 
     Attributes:
         record: the record of the scene, whose word, inputs and units are the load's.
         kind: the word of the scene format.
-        per_mass: whether its force is per mass, and so acts on masses that are fixed to sections as well.
-        uniform: whether a wrench per length has the profile 1 all along the rod: numbers that vary are data of the
-            sections. Else its columns are coefficients of Legendre polynomials.
-        nodal: name of an input that holds numbers of each node of the rod; empty for none.
+        per_mass: whether its force is per mass, so that it acts on masses that are fixed to sections too.
+        uniform: whether a wrench per length has the profile 1 all along the rod: varying numbers are data of the
+            sections. Otherwise its columns are coefficients of Legendre polynomials.
+        nodal: name of an input with values at each node of the rod; empty for none.
     """
 
     record: ClassVar[type[LoadRecord]]
@@ -179,7 +180,7 @@ class Load(Kind, ABC, Generic[RecordType]):
     nodal: ClassVar[str] = ""
 
     def growth(self, load: RecordType, site: Site) -> int:
-        """Power of the load factor by which a load that hangs on the pose grows from the unloaded scene."""
+        """Power of the load factor by which a pose-dependent load grows from the unloaded scene."""
         return 1
 
     def wrench(self, load: RecordType, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
@@ -191,7 +192,7 @@ class Load(Kind, ABC, Generic[RecordType]):
             force in N and moment in N m, or both per metre for a load that has no abscissa: 3×k each, where column j
             multiplies profile j of :meth:`profiles`.
         """
-        # The pose is a set of free symbols when a load is traced: the energy can be differentiated here.
+        # The pose consists of free symbols while a load is traced, so that the energy can be differentiated here.
         energy = self.energy(load, section, values)
         if energy is not None:
             return wrench_of_energy(energy, section.position, section.rotation)
@@ -200,7 +201,7 @@ class Load(Kind, ABC, Generic[RecordType]):
         return values["force"], values["moment"]
 
     def energy(self, load: RecordType, section: Section, values: Mapping[str, Matrix]) -> Matrix | None:
-        """Potential energy on a section, 1×1, J or J/m; None for a load that is not given by one."""
+        """Potential energy on a section, 1×1, J or J/m; None for a load that is not given by an energy."""
         return None
 
     def axes(self, load: RecordType) -> Axes:
@@ -209,9 +210,9 @@ class Load(Kind, ABC, Generic[RecordType]):
         return "section" if frame == "body" else "world"
 
     def abscissa(self, load: RecordType) -> Scalar | None:
-        """Abscissa X of the section that the load acts on; None where it acts per length, all along the rod.
+        """Abscissa X of the section that the load acts on; None for a load per length along the rod.
 
-        By default ``at`` of the record, where it has one.
+        By default it is ``at`` of the record, if it has this key.
         """
         return getattr(load, "at", None)
 
@@ -220,18 +221,18 @@ class Load(Kind, ABC, Generic[RecordType]):
         return bool(getattr(load, "rod", None) == rod)
 
     def on_body(self, load: RecordType, body: scenes.Body) -> BodyPoint | None:
-        """How the load acts on a rigid body of the scene; None where it does not.
+        """How the load acts on a rigid body of the scene; None if it does not.
 
-        By default at the point ``position`` of the body that the record names, or at its origin.
+        By default it acts at the point ``position`` of the body that the record names, or at its origin.
         """
         if getattr(load, "body", None) != body.name:
             return None
         return BodyPoint(getattr(load, "position", BodyPoint.position))
 
     def seen_from(self, load: RecordType) -> str | None:
-        """Name of the body in whose axes a load on rods is written, and which bears the opposite; None for the world.
+        """Name of the body that bears the reaction of a load on rods, which is in its axes; None for the world.
 
-        Sections then have their pose, and their wrench, in the axes of that body.
+        Poses and wrenches of sections are then in the axes of this body.
         """
         return None
 
@@ -241,15 +242,15 @@ class Load(Kind, ABC, Generic[RecordType]):
         return start, end
 
     def breaks(self, load: RecordType) -> tuple[Scalar, ...]:
-        """Abscissae at which the rod's fields jump, so that its elements must end there."""
-        # Under a point load strain and internal force jump, where a load per length begins their derivatives do.
+        """Abscissae of jumps in the rod's fields, at which its elements must end."""
+        # Strain and internal force jump at a point load, their derivatives jump at the ends of a load per length.
         at = self.abscissa(load)
         if at is None:
             return self.span(load)
         return (at,)
 
     def faults(self, load: RecordType, site: Site) -> Iterator[Problem]:
-        """Problems of a load on an unloaded rod, at many sections of it; none by default."""
+        """Problems of a load on an unloaded rod, tested at many sections; none by default."""
         yield from ()
 
     def profiles(self, load: RecordType, rod: RodProperties, X: Numbers, columns: int) -> Numbers:
@@ -261,24 +262,24 @@ class Load(Kind, ABC, Generic[RecordType]):
         return np.zeros((0, site.X.shape[0]))
 
     def remembers(self, load: RecordType) -> int:
-        """How many numbers the load remembers of each section along a path; none by default."""
+        """Count of numbers in the history of each section along a path; 0 by default."""
         return 0
 
     def rubbing(self, load: RecordType, section: Section) -> Rubbing:
-        """How a section rubs on its obstacle, of a load that remembers."""
+        """Friction of a section on its obstacle, for a load with a history."""
         raise NotImplementedError(f"{type(self).__name__} remembers nothing")
 
     def arrows(
         self, load: RecordType, label: str, position: FloatArray, force: FloatArray, moment: FloatArray
     ) -> list[Arrow]:
-        """How the load is drawn on a rod: at its section force and moment, along the rod the force per length.
+        """Arrows of the load on a rod: force and moment at its section, or force per length along the rod.
 
-        A load per length that has no force is drawn by its moment.
+        A load per length without force is drawn by its moment.
 
         Args:
-            load: the load as the scene has it.
-            label: its name in the legend; empty where the legend names it already.
-            position: positions of the k sections it is drawn at, world axes, shape (3, k), m.
+            load: record of the load in the scene.
+            label: its name in the legend; empty if the legend has it already.
+            position: positions of the k drawn sections, world axes, shape (3, k), m.
             force: force on these sections, world axes, shape (3, k), N or N/m.
             moment: moment on these sections, world axes, shape (3, k), N m or N m/m.
         """
@@ -314,7 +315,7 @@ class Load(Kind, ABC, Generic[RecordType]):
 
 def polynomials_at(count: int, X: Numbers) -> Numbers:
     """Legendre polynomials in 2X − 1 at abscissae, shape (count, len(X))."""
-    # The constant alone is a number wherever the sections are.
+    # The constant polynomial is a number even at symbolic abscissae.
     if count == 1:
         return np.ones((1, X.shape[0]))
     if is_symbolic(X):
@@ -328,7 +329,7 @@ def legendre_series(series: Numbers, X: Numbers) -> Numbers:
 
 
 def combined(weights: Numbers, functions: Numbers) -> Numbers:
-    """Functions (k, n) that are given at n abscissae, with weights (m, k): shape (m, n)."""
+    """Weighted sums, weights (m, k), of functions at n abscissae, (k, n): shape (m, n)."""
     if any_symbolic([weights, functions]):
         return as_matrix(weights) @ as_matrix(functions)
     return known(weights) @ known(functions)
@@ -347,7 +348,7 @@ def coefficients(components: tuple[Scalar | tuple[Scalar, ...], ...]) -> Numbers
 
 
 def _symbolic_coefficients(components: tuple[Scalar | tuple[Scalar, ...], ...]) -> Matrix:
-    """Three components as one 3×k matrix, where some numbers are expressions; zeros are not stored."""
+    """Three components with expressions among their numbers as one 3×k matrix; zeros are not stored."""
     rows = [component if isinstance(component, tuple) else (component,) for component in components]
     longest = max(len(row) for row in rows)
     padded = [(*row, *[0.0] * (longest - len(row))) for row in rows]
@@ -355,7 +356,7 @@ def _symbolic_coefficients(components: tuple[Scalar | tuple[Scalar, ...], ...]) 
 
 
 def constant(values: Numbers) -> Matrix | None:
-    """A baked-in magnitude: None where it is zero, so that it adds no instruction."""
+    """A constant magnitude; None if it is zero, so that it adds no instruction."""
     if is_zero(values):
         return None
     if is_symbolic(values):

@@ -1,4 +1,4 @@
-"""A load's wrench written in symbols once, to see its structure: its arguments decide how it is computed."""
+"""A load's wrench, written in symbols once: the symbols on which it depends decide how it is computed."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from cosserat_casadi.scene.records import Entry, Record
 KERNEL_ARGUMENTS = ["position", "rotation", "parameters", "data"]
 
 REMEMBERED = 64
-"""Kernels that are kept: enough for the loads of some scenes, each a few kilobytes."""
+"""Number of kept kernels: enough for the loads of some scenes, a few kilobytes each."""
 
 Patterns = tuple[tuple[str, tuple[int, ...]], ...]
 """Values by name with their sparsity patterns as CasADi compresses them."""
@@ -35,13 +35,13 @@ class TracedLoad:
 
     Attributes:
         member: the kind of load.
-        load: the load as the scene has it.
+        load: record of the load in the scene.
         kernel: its wrench at rest in world axes; data are the profiles of force and moment, then the numbers of
             :meth:`Load.data`.
-        moving: its wrench in motion, where it depends on rates; None for one that does not know of motion.
+        moving: its wrench in motion; None for a load that does not depend on rates.
         columns: number of profiles of the force and of the moment.
-        pose_free: whether force and moment, in the load's axes, are the same whatever the pose and the data.
-        fixed: whether they are the same whatever the pose, though they may differ from section to section.
+        pose_free: whether force and moment, in the load's axes, depend neither on the pose nor on the data.
+        fixed: whether they do not depend on the pose, though they may depend on the data of the section.
     """
 
     member: Load[Any]
@@ -54,27 +54,27 @@ class TracedLoad:
 
     @property
     def follower(self) -> bool:
-        """Whether a wrench that is free of the pose turns with its section."""
+        """Whether a pose-free wrench turns with its section."""
         return self.member.axes(self.load) == "section"
 
     @property
     def moving_by_body(self) -> SectionKernel | None:
-        """The kernel in motion of a load that acts on bodies or is seen from one.
+        """The kernel in motion of a load that acts on bodies or whose reaction a body bears.
 
         Raises:
-            ValueError: it depends on accelerations, which such loads do not know.
+            ValueError: it depends on accelerations, which such loads must not.
         """
         if self.moving is not None and not set(self.moving.rates) <= {"velocity", "angular_velocity"}:
             raise ValueError(f"{self.load.name!r} depends on accelerations, and loads on bodies do not know them")
         return self.moving
 
     def coefficients(self, values: Mapping[str, Matrix]) -> tuple[Matrix | None, Matrix | None]:
-        """Force and moment of a load that is free of the pose, in its axes, 3×k each; None for one that is zero."""
-        # No number would be right for the pose: should it be read after all, the result is not a number.
+        """Force and moment of a pose-free load, in its axes, 3×k each; None for a zero one."""
+        # The pose is NaN: a result that depended on it after all would be NaN.
         size = self.kernel.world_wrench.size1_in(3) - sum(self.columns)
         nowhere = Section(position=ca.DM.nan(3, 1), rotation=ca.DM.nan(3, 3), data=ca.DM.nan(size, 1))
         force, moment = self.member.wrench(self.load, nowhere, values)
-        # What vanishes by what it is multiplied with is read nevertheless: the symbols have found it to be zero.
+        # A product with a structural zero would still be NaN: the symbolic pattern decides that it is zero.
         wrench = self.kernel.world_wrench
         return (
             _unless_zero(force) if wrench.nnz_out(0) else None,
@@ -101,13 +101,12 @@ def traced(member: Load[Any], load: Any, values: Mapping[str, Matrix], data_size
 
     Args:
         member: the kind of load.
-        load: the load as the scene has it.
-        values: its inputs, and the numbers that are expressions of parameters; only which of their entries are
-            stored is read.
-        data_size: how many numbers of a section it depends on.
+        load: record of the load in the scene.
+        values: its inputs, and the numbers that are expressions of parameters; only their sparsity patterns matter.
+        data_size: number of data of a section on which it depends.
     """
     patterns = tuple((name, tuple(value.sparsity().compress())) for name, value in values.items())
-    # Expressions belong to a model, which would be held for good; records that change cannot be compared.
+    # Expressions belong to a model, which the cache would keep alive; mutable records cannot be compared.
     if expressions_in(load) or not _has_hash(load):
         return _trace(member, load, patterns, data_size)
     return _trace_once(member, load, patterns, data_size)
@@ -128,7 +127,7 @@ def _trace(member: Load[Any], load: Any, patterns: Patterns, data_size: int) -> 
         rotation=ca.SX.sym("rotation", 3, 3),
         data=ca.SX.sym("data", data_size),
     )
-    # Entries that are zero for good have no symbol, so that what they would make is structurally zero too.
+    # Entries that are always zero have no symbol, so that their products are structurally zero too.
     symbols = {name: ca.SX.sym(name, ca.Sparsity.compressed(pattern)) for name, pattern in patterns}
     written = load
     if expressions_in(load):
@@ -139,7 +138,7 @@ def _trace(member: Load[Any], load: Any, patterns: Patterns, data_size: int) -> 
     moment = ca.sparsify(ca.SX(given_moment))
     wrench = _entries(force, moment)
     fixed = energy is None and not ca.depends_on(wrench, _entries(section.position, section.rotation))
-    # What depends on the data of its section differs from node to node, and is evaluated there as well.
+    # A wrench that depends on the data of its section differs from node to node, and is evaluated at each too.
     pose_free = fixed and not ca.depends_on(wrench, section.data)
     if energy is None and member.axes(load) == "section":
         force = section.rotation @ force
@@ -186,14 +185,14 @@ def _kernel(
     wrench = ca.Function("wrench", arguments, results, [*KERNEL_ARGUMENTS, *rates], ["force", "moment"])
     if energy is None:
         return SectionKernel(wrench, rates=tuple(rates))
-    # The wrench is the derivative of the energy times its one profile, and so the energy has the profile too.
+    # The wrench is the derivative of the energy times its one profile, so that the energy is multiplied by it too.
     density = energy * force_profiles[0]
     return SectionKernel(wrench, ca.Function("energy", arguments, [density], KERNEL_ARGUMENTS, ["energy"]))
 
 
 def stored(values: Mapping[str, Matrix]) -> Matrix:
     """The stored entries of all inputs of a load, p×1, in their order."""
-    # The entries of one row are a row: they are stacked as well.
+    # CasADi returns the entries of a row as a row: they are stacked too.
     entries = [ca.reshape(value.nz[:], value.nnz(), 1) for value in values.values()]
     stacked: Matrix = ca.vertcat(*entries)
     return stacked
@@ -213,11 +212,11 @@ def _unless_zero(vector: Matrix) -> Matrix | None:
 def has_potential(
     member: Load[Any], load: Any, values: Mapping[str, FloatArray], data_size: int, *, one_axis: bool
 ) -> bool:
-    """Whether a load has a potential at these inputs, so that stability is the sign of an eigenvalue.
+    """Whether a load has a potential at these inputs, so that an eigenvalue decides on stability.
 
-    A load that is given by its energy has, and so has a force of fixed direction. A moment of fixed direction has only
-    where all that it acts on turns about one axis. A load that turns with its section, or depends on its pose in
-    another way, has none, unless it vanishes at these inputs.
+    Loads that are given by an energy have one, and so have forces of fixed direction. A moment of fixed direction has
+    one only if all that it acts on turns about one axis. A follower, or a load that depends on its pose without an
+    energy, has none, unless it is zero at these inputs.
     """
     # Inputs that are zero leave no entry, so that a wrench that vanishes with them is structurally zero.
     numbers = {name: ca.sparsify(ca.DM(value)) for name, value in values.items()}
@@ -229,7 +228,7 @@ def has_potential(
     moment_vanishes = wrench.nnz_out(1) == 0
     if force_vanishes and moment_vanishes:
         return True
-    # The work of a wrench that follows, or hangs on the pose, may depend on the way: nothing is claimed for it.
+    # The work of a follower, or of a wrench that depends on the pose, may depend on the path: no potential is claimed.
     if trace.follower or not trace.fixed:
         return False
     return moment_vanishes or one_axis
@@ -239,9 +238,9 @@ def has_potential(
 
 
 def expressions_in(record: Any) -> dict[str, Matrix]:
-    """Expressions in a record by their paths, but for expressions of its inputs."""
+    """Expressions in a record by their paths, without its inputs."""
     found: dict[str, Matrix] = {}
-    # What stands for a record in another program has none.
+    # Objects of other programs that stand in for records have none.
     if not isinstance(record, Entry):
         return found
     for key in type(record).model_fields:
@@ -262,7 +261,7 @@ def _collect(value: Any, path: str, found: dict[str, Matrix]) -> None:
 
 
 def with_expressions(record: Entry, values: Mapping[str, Matrix]) -> Entry:
-    """The record with these values at their paths; names that are no paths of its expressions are not read."""
+    """The record with these values at their paths; names of other things are ignored."""
     changes = {}
     for key in type(record).model_fields:
         if key not in record.inputs:

@@ -1,7 +1,7 @@
 """Magnetised rods and dipoles in a field: energy −m·B, of which moment m × B and force ∇(m·B) are the derivatives.
 
-The field has three sources, which add up: uniform, linear in the place, and of a dipole. J. D. Jackson,
-*Classical Electrodynamics*, 3rd ed., (5.56), (5.72). What the magnets of a scene do to each other is left out.
+The field is a sum of three: a uniform field, a field that is linear in the position, and the field of a dipole. J. D.
+Jackson, *Classical Electrodynamics*, 3rd ed., (5.56), (5.72). Interactions of the magnets of a scene are left out.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class MagnetLoad(Load[scenes.Magnet]):
     uniform = True
 
     def abscissa(self, load: scenes.Magnet) -> Scalar | None:
-        """The section that holds a dipole; None of a magnetised rod."""
+        """Abscissa of the section with a dipole; None for a magnetised rod."""
         return None if load.moment is None else load.at
 
     def energy(self, load: scenes.Magnet, section: Section, values: Mapping[str, Matrix]) -> Matrix:
@@ -43,12 +43,12 @@ class MagnetLoad(Load[scenes.Magnet]):
         return -ca.dot(self._moment(load, section, values), field)
 
     def data(self, load: scenes.Magnet, site: Site) -> Numbers:
-        """Moment per length in section axes at the sections of a magnetised rod, A m, but for zero components."""
+        """Moment per length in section axes at the sections of a magnetised rod, A m, without zero components."""
         if load.magnetisation is None:
             return np.zeros((0, site.X.shape[0]))
         series = coefficients(load.magnetisation)[_components(load), :]
         magnetisation = legendre_series(series, site.X)
-        # The magnetisation of a rod that has no section is its moment per length already.
+        # The magnetisation of a rod without a section is given as its moment per length.
         if site.rod.area is None:
             return magnetisation
         return columns_times(magnetisation, site.rod.area(site.X))
@@ -74,7 +74,7 @@ class MagnetLoad(Load[scenes.Magnet]):
 
 
 ON_THE_AXIS = 1e-9
-"""Distance, relative to its length, within which a rod that is given by its stiffness is touched."""
+"""Distance, relative to the length, within which a source counts as inside a rod that is given by its stiffness."""
 
 
 def _components(load: scenes.Magnet) -> list[int]:

@@ -1,6 +1,6 @@
-"""Common part of the loads that an obstacle exerts: on rods, seen in the obstacle's axes, and on bodies as balls.
+"""Common part of the loads by obstacles: on rods, in the obstacle's axes, and on bodies as balls.
 
-Rods keep from obstacles by the radius of their sections, bodies by theirs.
+Sections of rods keep away from obstacles by their radius, bodies by theirs.
 """
 
 from __future__ import annotations
@@ -33,13 +33,13 @@ class ObstacleLoad(Load[ObstacleRecordType]):
     uniform = True
 
     def seen_from(self, load: ObstacleRecordType) -> str | None:
-        """The body that the obstacle is fixed to."""
+        """Name of the body that the obstacle is fixed to; None for the world."""
         body: str | None = load.obstacle.body
         return body
 
 
 def section_radii(rod: RodProperties, X: Numbers) -> Numbers:
-    """Radius of the sections of a rod at abscissae X, shape (k,), m; zero where it is given by its stiffness."""
+    """Radius of the sections of a rod at abscissae X, shape (k,), m; zero for a rod given by its stiffness."""
     if rod.diameter is None:
         return np.zeros(X.shape[0])
     return repeated(rod.diameter(X) / 2, X.shape[0])

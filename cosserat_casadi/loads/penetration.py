@@ -1,4 +1,4 @@
-"""A cushion in front of an obstacle, energy k/3 (ρ − d)₊³ per length: where contact is, before it is found exactly.
+"""A cushion in front of an obstacle, energy k/3 (ρ − d)₊³ per length: a first guess of exact contact.
 
 Rods sink into it by a small share of their length, and so do bodies, as balls of their radius. It gives a first guess
 of places and forces, never a result; no scene file names this load.
@@ -41,7 +41,7 @@ class Penetration(ObstacleLoadRecord):
 class PenetrationLoad(ObstacleLoad[Penetration]):
     """k (ρ − d)² per length along the normal of the obstacle, where a section of radius ρ is in it; k in N/m³.
 
-    On a body that is no force per length but a force, and k is in N/m².
+    On a body it is a force, and k is in N/m².
     """
 
     record = Penetration
@@ -63,7 +63,7 @@ class PenetrationLoad(ObstacleLoad[Penetration]):
         return energy
 
     def data(self, load: Penetration, site: Site) -> Numbers:
-        """Radius of the sections, m, and how much the obstacle is raised there, m."""
+        """Radius of the sections, m, and height by which the obstacle is raised there, m."""
         radii = section_radius(site.rod, known(site.X))[None]
         if site.nodal is None:
             return np.vstack([radii, np.zeros_like(radii)])

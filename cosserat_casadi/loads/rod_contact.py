@@ -1,28 +1,28 @@
-"""The push between two rods, or between two stretches of one: an energy of each pair of their sections.
+"""The push between two rods, or two stretches of one rod: an energy for each pair of their sections.
 
-Two sections whose centres are d apart, of rods with the radii ρ, σ, and D = ρ + σ, store per length of either rod
+Two sections with centres at a distance d, of rods with the radii ρ, σ, and D = ρ + σ, store per length of both rods
 
     u = c (R² − d²)₊³,    R = D + w,    c = 5 k / (32 Δ^{3/2} (5 D² − Δ)),    Δ = R² − D²
 
-with the width w and the stiffness k. Only the distance counts: forces are opposite and along the line of the centres,
-so that neither a sum nor a moment of them remains. Of two straight parallel rods with the gap g = d − D the integral
-over one rod is 32/35 c (R² − d²)₊^{7/2} per length of the other. Its slope is the force per length: zero from the
-gap w on, k D Δ / (5 D² − Δ), or 2 k w/5 for a small width, where they touch, and there it grows by k for each metre of
-gap: the regularisation that an obstacle with a width has, too. Rods that cross at the angle α press each other with
-2π c d (R² − d²)₊³ / sin α.
+with the width w and the stiffness k. The energy depends on the distance alone: forces are opposite and along the line
+of the centres, so that their sum and their moment are zero. For two straight parallel rods with the gap g = d − D the
+integral over one rod is 32/35 c (R² − d²)₊^{7/2} per length of the other. Its derivative is the force per length: zero
+for gaps above w, k D Δ / (5 D² − Δ), or 2 k w/5 for a small width, at zero gap, where its rate with the gap is k: the
+regularisation of an obstacle with a width. Rods that cross at the angle α press each other with 2π c d (R² − d²)₊³ /
+sin α.
 
-Everything is a function of squared distances: value, gradient and second derivatives are finite and continuous where
-rods are parallel, cross, or coincide. Sections stand for as much rod as lies between them, and their sum converges as
-the third derivative of u is bounded: half as far apart, the ripple along a rod falls by 2⁴.
+All functions are of squared distances: value, gradient and second derivatives are finite and continuous for rods that
+are parallel, cross, or coincide. Each section represents the rod between it and its neighbours, and the sum converges
+as the third derivative of u is bounded: at half the spacing the ripple along a rod falls by 2⁴.
 
-Friction is Coulomb's, of each pair by its own force. In motion it is regularised by the slip speed. Along a path a pair
-that sticks is held by a spring of the stiffness μ F/s, which slips where it is dragged by the way s, whatever the force
-F between the sections. Sections that are pressed harder while they stick give back energy, μ F s/2 at most.
+Friction is Coulomb's, for each pair by its own force. In motion it is regularised by the slip speed. Along a path a
+spring of the stiffness μ F/s holds a pair that sticks, and slips at the drag s, for every force F between the sections.
+Sections that are pressed harder while they stick give back energy, μ F s/2 at most.
 
-A CasADi graph has no loop whose length depends on values. Sections lie in panels; a function that is only called where
-the bounding balls of two panels meet is mapped over the panels of the second rod, inside one that is only called where
-a panel of the first meets any of these. So panels that are apart cost one comparison each, and so do groups of panels,
-where a rod has more than one.
+A CasADi graph has no loop with a length that depends on values. Sections are grouped in panels. A function of two
+panels, called only if their bounding balls meet, is mapped over the panels of the second rod, inside a function that is
+called only if a panel of the first rod meets any of these. So panels that are apart cost one comparison each, and so do
+groups of panels, if a rod has more than one.
 """
 
 from __future__ import annotations
@@ -36,35 +36,36 @@ import casadi as ca
 from cosserat_casadi.maths.typing import Matrix
 
 PANEL = 16
-"""Sections of a panel."""
+"""Number of sections of a panel."""
 
 GROUP = 16
-"""Panels of a group: sections that are far from a group are not compared with its panels."""
+"""Number of panels of a group: sections that are far from a group are not compared with its panels."""
 
 DATA = 3
-"""Numbers of a section beside its position: length of rod that it stands for, radius, distance along the rod, m."""
+"""Data of a section beside its position: length of rod that it represents, radius, distance along the rod, m."""
 
 MOTION = 6
-"""Numbers of the motion of a section, which stand behind its data: velocity, m/s, and angular velocity, rad/s.
+"""Numbers of the motion of a section, which follow its data: velocity, m/s, and angular velocity, rad/s.
 
-Along a path displacement, m, and rotation since its last point, the axis times the tangent of half of the angle.
+Along a path they are displacement, m, and rotation since its last point, axis times tangent of half the angle.
 """
 
 STILL = ca.DM(MOTION, 0)
 """Motion of sections at rest."""
 
 LAW = 5
-"""Numbers of a law: width, m, stiffness, N/m², and how far the second section is along the rod beyond the first, m.
+"""Numbers of a law: width, m, stiffness, N/m², and least distance along the rod from the first section to the second,
+m.
 
-The last is a least distance. Of two rods every pair counts; of one and itself each pair once. The coefficient of
-friction and the slip speed, m/s, follow; along a path the way at which sections slip, m.
+Of two rods every pair counts; of a rod and itself each pair once. The coefficient of friction and the slip speed, m/s,
+follow; along a path the drag at which sections slip, m.
 """
 
 NO_WAY = 1e-9
-"""Way, over the way at which sections slip, or distance, over the distance of touching, that has no direction."""
+"""Drag over the drag of slip, or distance over the touching distance, below which there is no direction."""
 
 FAR = -1.0
-"""Depth, in widths, of sections that do not meet."""
+"""Depth, in widths, that stands for sections that do not meet."""
 
 
 def coefficient(width: Matrix | float, stiffness: Matrix | float, touching: Matrix | float) -> Matrix | float:
@@ -73,7 +74,7 @@ def coefficient(width: Matrix | float, stiffness: Matrix | float, touching: Matr
     Args:
         width: w, m.
         stiffness: k, N/m².
-        touching: distance D of centres that touch, m.
+        touching: distance D of the centres of touching sections, m.
     """
     square = (touching + width) ** 2 - touching**2
     return 5 * stiffness / (32 * square**1.5 * (5 * touching**2 - square))
@@ -85,9 +86,9 @@ class PairKernels:
 
     Attributes:
         energy: 1×1, J.
-        depth: D − d over the width, counted from FAR, 1×1; zero where the sections do not meet.
-        gradient: derivative of the energy with the first position, 3×1, N; with the second it is the opposite.
-        hessian: second derivative with one position, 3×3, N/m; with both it is the opposite.
+        depth: D − d over the width, minus FAR, 1×1; zero if the sections do not meet.
+        gradient: derivative of the energy by the first position, 3×1, N; the derivative by the second is its opposite.
+        hessian: second derivative by one position, 3×3, N/m; the mixed derivative is its opposite.
     """
 
     energy: ca.Function
@@ -98,7 +99,7 @@ class PairKernels:
 
 @cache
 def pair_kernels() -> PairKernels:
-    """The functions of two sections, which all rods share."""
+    """The functions of two sections, common to all rods."""
     places = [ca.SX.sym(name, 3) for name in ("first", "second")]
     data = [ca.SX.sym(name, DATA) for name in ("first_data", "second_data")]
     law = ca.SX.sym("law", LAW)
@@ -126,14 +127,14 @@ def pair_kernels() -> PairKernels:
 
 @dataclass(frozen=True)
 class PairInMotion:
-    """Two sections that touch, and how they move past each other.
+    """Two touching sections and their motion past each other.
 
     Attributes:
         arguments: symbols (position, data and motion, position, data and motion, law).
-        arms: vectors from the centre of each section to the point that touches, 3×1, m.
+        arms: vectors from the centre of each section to its touching point, 3×1, m.
         pressing: force between the sections, 1×1, N.
         normal: unit vector from the second to the first, 3×1.
-        velocity: relative velocity, or way, of their points that touch, 3×1, m/s or m.
+        velocity: relative velocity, or displacement, of their touching points, 3×1, m/s or m.
     """
 
     arguments: list[ca.SX]
@@ -144,12 +145,12 @@ class PairInMotion:
 
     @property
     def sliding(self) -> ca.SX:
-        """The part of the velocity, or way, along the surface, 3×1."""
+        """The part of the velocity, or displacement, along the surface, 3×1."""
         return self.velocity - self.normal * ca.dot(self.normal, self.velocity)
 
 
 def _turned(vector: ca.SX, rotation: ca.SX) -> ca.SX:
-    """A vector turned by a rotation, which is the axis times the tangent of half of the angle."""
+    """A vector turned by a rotation, given as axis times tangent of half the angle."""
     across = ca.cross(rotation, vector)
     return vector + 2 * (across + ca.cross(rotation, across)) / (1 + ca.sumsqr(rotation))
 
@@ -157,8 +158,8 @@ def _turned(vector: ca.SX, rotation: ca.SX) -> ca.SX:
 def _pair_in_motion(along_path: bool) -> PairInMotion:
     """Two sections in symbols.
 
-    Along a path the drag, which is part of the displacement of the first, turns with this section: rods that are moved
-    together as if they were rigid rub as before.
+    Along a path the drag, which is part of the displacement of the first section, turns with this section: a rigid
+    motion of both rods does not change friction.
     """
     places = [ca.SX.sym(name, 3) for name in ("first", "second")]
     data = [ca.SX.sym(name, DATA + MOTION) for name in ("first_data", "second_data")]
@@ -167,11 +168,11 @@ def _pair_in_motion(along_path: bool) -> PairInMotion:
     (length, radius, along), (other_length, other_radius, other_along) = (ca.vertsplit(own[:DATA]) for own in data)
     touching = radius + other_radius
     apart = places[0] - places[1]
-    # A section that is paired with itself is at no distance, and does not count.
+    # A section paired with itself has distance zero, and does not count.
     square = ca.fmax(ca.sumsqr(apart), (NO_WAY * touching) ** 2)
     inside = ca.fmax((touching + width) ** 2 - square, 0.0)
     meets = other_along - along >= nearest
-    # Minus the derivative of the energy with the distance d, over d.
+    # Minus the derivative of the energy by the distance d, over d.
     by_distance = 6 * meets * length * other_length * coefficient(width, stiffness, touching) * inside**2
     arms = [-radius / touching * apart, other_radius / touching * apart]
     motions = [own[DATA : DATA + 3] for own in data]
@@ -192,9 +193,9 @@ def _pair_in_motion(along_path: bool) -> PairInMotion:
 def friction_kernel(along_path: bool) -> ca.Function:
     """(position, data and motion, position, data and motion, law) ↦ [force; moment] on the first, on the second, 12×1.
 
-    Coulomb's law of :mod:`cosserat_casadi.loads.contact_layer` with the relative velocity of the points of both
-    sections that touch. They are one point on the line of the centres, so that neither a sum nor a moment remains.
-    Along a path the way of these points stands for it, and sections slip where it is as long as the law says.
+    It is Coulomb's law of :mod:`cosserat_casadi.loads.contact_layer` with the relative velocity of the touching points
+    of both sections. They are one point on the line of the centres, so that sum and moment of the forces are zero.
+    Along a path the drag of these points replaces the velocity, and sections slip at the drag that the law gives.
     """
     pair = _pair_in_motion(along_path)
     *_, friction, slip = ca.vertsplit(pair.arguments[LAW_ARGUMENT])
@@ -209,9 +210,9 @@ def friction_kernel(along_path: bool) -> ca.Function:
 
 @cache
 def way_kernel() -> ca.Function:
-    """Arguments of :func:`friction_kernel` ↦ way of the points that touch and normal, both times the force; the force.
+    """Arguments of :func:`friction_kernel` ↦ drag of the touching points and normal, both times the force; the force.
 
-    Along a path; the way, the normal and the force between the sections stand one below the other, 7×1.
+    It is for paths; drag, normal and the force between the sections are stacked, 7×1.
     """
     pair = _pair_in_motion(along_path=True)
     weighted = pair.pressing * ca.vertcat(pair.velocity, pair.normal, 1)
@@ -226,20 +227,20 @@ def _panels(data: int = DATA) -> list[ca.MX]:
 
 
 def _by_pair(kernel: ca.Function, arguments: Sequence[Matrix]) -> Matrix:
-    """Results of a kernel for every pair of sections of two panels, side by side, the first running faster."""
+    """Results of a kernel for every pair of sections of two panels, side by side; the first index runs faster."""
     result: Matrix = kernel.map(PANEL**2)(*_for_all_pairs(arguments))
     return result
 
 
 def _over_second(results: Matrix, count: int = PANEL) -> Matrix:
-    """Sum of what stands side by side for the sections of the second panel, or for so many panels."""
+    """Sum of ``count`` blocks side by side, one for each section of the second panel, or for each panel."""
     rows, columns = results.shape
     summed = ca.sum2(ca.reshape(results, rows * columns // count, count))
     return ca.reshape(summed, rows, columns // count)
 
 
 def _over_first(results: Matrix) -> Matrix:
-    """Sum over the sections of the first panel, side by side for the second."""
+    """Sum over the sections of the first panel, side by side for the sections of the second."""
     rows, columns = results.shape
     summed = ca.repsum(ca.reshape(results, rows * columns // PANEL, PANEL), PANEL, 1)
     by_section: Matrix = ca.reshape(summed, rows, columns // PANEL)
@@ -255,14 +256,14 @@ def panel_energy() -> ca.Function:
 
 @cache
 def panel_depth() -> ca.Function:
-    """(positions, data, positions, data, law) of two panels ↦ largest depth, counted from FAR, 1×1."""
+    """(positions, data, positions, data, law) of two panels ↦ largest depth minus FAR, 1×1."""
     arguments = _panels()
     return ca.Function("depth", arguments, [ca.mmax(_by_pair(pair_kernels().depth, arguments))])
 
 
 @cache
 def panel_gradient() -> ca.Function:
-    """Arguments of :func:`panel_energy` ↦ derivatives of the energy with positions of both panels, 3×PANEL each, N."""
+    """Arguments of :func:`panel_energy` ↦ derivatives of the energy by positions of both panels, 3×PANEL each, N."""
     arguments = _panels()
     gradients = _by_pair(pair_kernels().gradient, arguments)
     return ca.Function("gradient", arguments, [_over_second(gradients), -_over_first(gradients)])
@@ -270,18 +271,18 @@ def panel_gradient() -> ca.Function:
 
 @cache
 def panel_way() -> ca.Function:
-    """Two panels with motions behind the data ↦ sums of :func:`way_kernel` for sections of the first, 7×PANEL."""
+    """Two panels with motions after the data ↦ sums of :func:`way_kernel` for sections of the first, 7×PANEL."""
     arguments = _panels(DATA + MOTION)
     return ca.Function("way", arguments, [_over_second(_by_pair(way_kernel(), arguments))])
 
 
 @cache
 def panel_friction(along_path: bool) -> ca.Function:
-    """Two panels with motions behind the data ↦ [force; moment] of friction on sections of both, 6×PANEL each."""
+    """Two panels with motions after the data ↦ [force; moment] of friction on sections of both, 6×PANEL each."""
     arguments = _panels(DATA + MOTION)
     first, second = ca.vertsplit(_by_pair(friction_kernel(along_path), arguments), 6)
     results = [_over_second(first), _over_first(second)]
-    # Directions are multiplied with one Jacobian, which is put together from those of the pairs.
+    # Directions are multiplied by one Jacobian, which is assembled from the Jacobians of the pairs.
     jacobian = _friction_jacobian(arguments, results, along_path)
     options = {"custom_jacobian": jacobian, "jac_penalty": 0.0, "never_inline": True}
     friction = ca.Function("friction_of_panels", arguments, results, options)
@@ -290,13 +291,13 @@ def panel_friction(along_path: bool) -> ca.Function:
 
 
 def _friction_jacobian(arguments: Sequence[ca.MX], results: Sequence[Matrix], along_path: bool) -> ca.Function:
-    """Derivatives of friction on both panels with positions, data and law, which is constant."""
+    """Derivatives of friction on both panels by positions and data; the law is constant."""
     kernel = friction_kernel(along_path)
     symbols = kernel.sx_in()
     (loads,) = kernel.call(symbols)
     parts = ca.vertsplit(loads, 6)
     derivatives = [ca.densify(ca.jacobian(part, symbol)) for part in parts for symbol in symbols[:4]]
-    # Of the first load with the second section: transposed, so that sections of the first stand below each other.
+    # Derivative of the first load by the second section, transposed, so that sections of the first are stacked.
     turned = [derivative.T if index in (2, 3) else derivative for index, derivative in enumerate(derivatives)]
     pairs = ca.Function("by_pair", symbols, ca.cse(turned)).map(PANEL**2)
     by_pair = pairs.call(_for_all_pairs(arguments))
@@ -318,17 +319,17 @@ def _friction_jacobian(arguments: Sequence[ca.MX], results: Sequence[Matrix], al
 
 @cache
 def panel_friction_rates(along_path: bool, first: int, second: int) -> ca.Function:
-    """Arguments of :func:`panel_friction`, their derivatives with numbers ↦ derivatives of friction with these numbers.
+    """Arguments of :func:`panel_friction`, their derivatives by numbers ↦ derivatives of friction by these numbers.
 
     Args:
-        along_path: whether motions are counted from the last point of a path.
-        first: how many numbers n the sections of the first panel depend on.
-        second: how many numbers m the sections of the second panel depend on.
+        along_path: whether motions count from the last point of a path.
+        first: count n of the numbers on which the sections of the first panel depend.
+        second: count m of the numbers on which the sections of the second panel depend.
 
     Returns:
         function whose last arguments are the derivatives of positions and data of the second panel, m×(3 PANEL) and
         m×((DATA + MOTION) PANEL), then of the first. Its results are the derivatives of [force; moment] on the sections
-        of the first panel and of the second with the n numbers, n×(6 PANEL), then with the m numbers, m×(6 PANEL).
+        of the first panel and of the second by the n numbers, n×(6 PANEL), then by the m numbers, m×(6 PANEL).
     """
     arguments = _panels(DATA + MOTION)
     loads = [ca.MX(6, PANEL), ca.MX(6, PANEL)]
@@ -355,13 +356,13 @@ def panel_stiffness(count: int) -> ca.Function:
         count: coordinates n of the motion: three components, one row for each coordinate, 3n×PANEL.
 
     Returns:
-        function whose results are the derivatives with each section of the first panel twice, and of the second,
-        9×PANEL each, and with the coordinates and the positions of the first, n×(3 PANEL).
+        function whose results are the second derivatives by each section of the first panel, and of the second, 9×PANEL
+        each, and by the coordinates and the positions of the first, n×(3 PANEL).
     """
     arguments = _panels()
     motion = ca.MX.sym("motion", 3 * count, PANEL)
     blocks = _by_pair(pair_kernels().hessian, arguments)
-    # Below each other for the sections of the second panel, whose motion has its components side by side.
+    # Stacked for the sections of the second panel, whose motion has its components side by side.
     mixed = -ca.vertcat(*ca.horzsplit(blocks, 3 * PANEL))
     by_coordinates = ca.reshape(motion, count, 3 * PANEL) @ mixed
     entries = ca.reshape(blocks, 9, PANEL**2)
@@ -387,7 +388,7 @@ def _ball_about(balls: Matrix) -> Matrix:
 
 @cache
 def called_near(function: ca.Function) -> ca.Function:
-    """(near, arguments…) ↦ results of a function; zeros, without a call, where near is zero."""
+    """(near, arguments…) ↦ results of a function; zeros without a call if near is zero."""
     symbols = [ca.MX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
     nothing = [ca.MX.zeros(function.sparsity_out(i)) for i in range(function.n_out())]
     far = ca.Function(f"no_{function.name()}", symbols, nothing)
@@ -396,12 +397,12 @@ def called_near(function: ca.Function) -> ca.Function:
 
 @dataclass(frozen=True)
 class SectionsInContact:
-    """Sections of a rod, in panels, whose positions are known.
+    """Sections of a rod in panels, with their positions.
 
     Attributes:
         positions: world axes, 3×S, m, with S a multiple of PANEL.
         data: DATA×S.
-        motion: MOTION×S, world axes; without columns at rest but along a path with friction.
+        motion: MOTION×S, world axes; without columns at rest, unless along a path with friction.
     """
 
     positions: Matrix
@@ -439,9 +440,9 @@ class SectionPairs:
 
     Attributes:
         first: sections of the first rod.
-        second: sections of the other rod; ``first`` where a rod touches itself.
+        second: sections of the other rod; ``first`` for a rod that touches itself.
         law: numbers of the law, LAW×1.
-        along_path: whether their motion is counted from the last point of a path.
+        along_path: whether their motion counts from the last point of a path.
     """
 
     first: SectionsInContact
@@ -457,13 +458,13 @@ class SectionPairs:
 
     @cached_property
     def depth(self) -> Matrix:
-        """Depth where it is largest, in widths, 1×1; FAR where nothing touches."""
+        """Largest depth, in widths, 1×1; FAR without contact."""
         (depths,) = self._over_pairs(panel_depth(), "e")
         return ca.mmax(depths) + FAR
 
     @cached_property
     def gradient(self) -> tuple[Matrix, Matrix]:
-        """Derivatives of the energy with the positions of both, 3×S each, N."""
+        """Derivatives of the energy by the positions of both, 3×S each, N."""
         first, second = self._over_pairs(panel_gradient(), "fs")
         return first, second
 
@@ -475,26 +476,26 @@ class SectionPairs:
 
     @cached_property
     def way(self) -> Matrix:
-        """Sums of way, normal and 1, each times the force of a pair, for each section of the first, 7×S."""
+        """Sums of drag, normal and 1, each times the force of a pair, for each section of the first, 7×S."""
         (weighted,) = self._moving._over_pairs(panel_way(), "f")
         return weighted
 
     @property
     def _moving(self) -> SectionPairs:
-        """These pairs with motions behind the data."""
+        """These pairs with motions after the data."""
         first, second = (replace(own, data=ca.vertcat(own.data, own.motion)) for own in (self.first, self.second))
         return replace(self, first=first, second=second)
 
     def stiffness(self, first: Matrix, second: Matrix) -> tuple[Matrix, Matrix, Matrix]:
-        """Second derivatives of the energy with coordinates: of the first twice, second and first, of the second twice.
+        """Second derivatives of the energy by coordinates: first and first, second and first, second and second.
 
         Args:
-            first: motion of the sections of the first rod with its n coordinates, 3n×S: three components, one row for
+            first: motion of the sections of the first rod by its n coordinates, 3n×S: three components, one row for
                 each coordinate.
-            second: motion of the sections of the second rod with its m coordinates, 3m×S.
+            second: motion of the sections of the second rod by its m coordinates, 3m×S.
 
         Returns:
-            n×n, m×n and m×m; of a rod that touches itself the first is the sum of both, and the last is zero.
+            n×n, m×n and m×m; for a rod that touches itself the first is the sum of both, and the last is zero.
         """
         by_first, by_second, mixed = self._over_pairs(panel_stiffness(second.shape[0] // 3), "fsf", second)
         touch = ca.norm_1(ca.vec(by_first)) > 0.0
@@ -508,24 +509,24 @@ class SectionPairs:
         return own(touch, by_first, first), across, other(touch, by_second, second)
 
     def friction_rates(self, first: Sequence[Matrix], second: Sequence[Matrix]) -> tuple[list[Matrix], list[Matrix]]:
-        """Derivatives of :attr:`friction` with n numbers of the first sections and with m of the second.
+        """Derivatives of :attr:`friction` by n numbers of the first sections and by m of the second.
 
         Args:
-            first: derivatives of positions, n×3S, and of data with motions behind them, n×(DATA + MOTION)S.
+            first: derivatives of positions, n×3S, and of data with motions after them, n×(DATA + MOTION)S.
             second: derivatives of positions and data of the second sections, m×….
 
         Returns:
-            derivatives of the loads on the first sections, n×6S, and on the second with the n numbers; then with the m.
+            derivatives of the loads on the first sections, n×6S, and on the second by the n numbers; then by the m.
         """
         function = panel_friction_rates(self.along_path, first[0].shape[0], second[0].shape[0])
         rates = self._moving._over_pairs(function, "fsfs", *second, *first)
         return rates[:2], rates[2:]
 
     def _over_pairs(self, function: ca.Function, results: str, *motion: Matrix) -> list[Matrix]:
-        """Results of a function of two panels for all pairs; zeros where sections are apart.
+        """Results of a function of two panels for all pairs; zeros for sections that are apart.
 
         Args:
-            function: of two panels, the law, and what else ARGUMENTS names.
+            function: a function of two panels, the law, and further arguments that ARGUMENTS names.
             results: a letter for each result. Results for sections of the first, ``f``, are summed over the panels of
                 the second; results for sections of the second, ``s``, over the panels of the first; results for pairs
                 of panels, ``e``, stand side by side.
@@ -557,12 +558,12 @@ def _near_any(first: Matrix, second: Matrix, law: Matrix) -> list[Matrix]:
 
 
 def _owners(function: ca.Function) -> list[str]:
-    """Owners of the arguments of a function of two panels, and of their balls behind these."""
+    """Owners of the arguments of a function of two panels, then of their balls."""
     return [*ARGUMENTS[: function.n_in()], "first", "second"]
 
 
 def _joined(results: str, parts: Sequence[Sequence[Matrix]]) -> list[Matrix]:
-    """Results for parts of the first rod, joined: results for the second rod are summed, others stand side by side."""
+    """Join results for parts of the first rod: results for the second rod are summed, others put side by side."""
     fields = zip(results, zip(*parts, strict=True), strict=True)
     return [sum(of_part[1:], of_part[0]) if of == "s" else ca.horzcat(*of_part) for of, of_part in fields]
 
@@ -579,7 +580,7 @@ def _over_panels(
         first: number of panels of the first rod.
         second: number of panels of the second rod.
     """
-    # One call for each panel of the first: what belongs to the second is not copied for it.
+    # One call for each panel of the first: arguments of the second are not copied for it.
     by_panel = [
         ca.horzsplit(field, field.shape[1] // first) if owner == "first" else [field] * first
         for field, owner in zip(of_all, _owners(function), strict=True)
@@ -590,7 +591,7 @@ def _over_panels(
 
 
 def _symbols(function: ca.Function, first: int, second: int) -> list[ca.MX]:
-    """Symbols for the arguments of a function of two panels for so many panels, and for their balls."""
+    """Symbols for the arguments of a function of two panels for these numbers of panels, and for their balls."""
     sizes = [*(function.size_in(i) for i in range(function.n_in())), (6, 1), (6, 1)]
     counts = {"first": first, "second": second, "law": 1}
     return [
@@ -621,9 +622,9 @@ def _row(function: ca.Function, results: str, panels: int) -> ca.Function:
     """A function of two panels for one panel of the first rod and all of the second.
 
     Args:
-        function: of two panels, the law, and what else ARGUMENTS names.
+        function: a function of two panels, the law, and further arguments that ARGUMENTS names.
         results: as :meth:`SectionPairs._over_pairs` takes them.
-        panels: of the second rod.
+        panels: number of panels of the second rod.
 
     Returns:
         the arguments for all panels, and their balls ↦ the results.
@@ -640,14 +641,14 @@ def _row(function: ca.Function, results: str, panels: int) -> ca.Function:
 
 
 ARGUMENTS = ("first", "first", "second", "second", "law", "second", "second", "first", "first")
-"""Owners of the arguments of a function of two panels: behind the law how they move, or their derivatives."""
+"""Owners of the arguments of a function of two panels; motions, or derivatives, follow the law."""
 
 LAW_ARGUMENT = ARGUMENTS.index("law")
-"""Place of the law among the arguments of a function of two panels."""
+"""Index of the law among the arguments of a function of two panels."""
 
 
 def _for_all_pairs(arguments: Sequence[Matrix]) -> list[Matrix]:
-    """Positions, data and law of two panels for all pairs of their sections, the first running faster."""
+    """Positions, data and law of two panels for all pairs of their sections; the first index runs faster."""
     first, second = arguments[:2], arguments[2:4]
     of_first = [ca.repmat(field, 1, PANEL) for field in first]
     of_second = [ca.reshape(ca.repmat(field, PANEL, 1), field.shape[0], PANEL**2) for field in second]
@@ -656,14 +657,14 @@ def _for_all_pairs(arguments: Sequence[Matrix]) -> list[Matrix]:
 
 @cache
 def _across(first: int, second: int, sections: int) -> ca.Function:
-    """(derivatives with m coordinates and the positions of sections, m×3S, motion of these, 3n×S) ↦ m×n."""
+    """(derivatives by m coordinates and the positions of sections, m×3S, motion of these, 3n×S) ↦ m×n."""
     mixed, motion = ca.MX.sym("mixed", second, 3 * sections), ca.MX.sym("motion", 3 * first, sections)
     return ca.Function("across", [mixed, motion], [mixed @ ca.reshape(motion, first, 3 * sections).T])
 
 
 @cache
 def _with_coordinates(count: int, sections: int) -> ca.Function:
-    """(derivatives with each section, 9×S, and its motion, 3n×S) ↦ second derivative with n coordinates, n×n."""
+    """(derivatives by each section, 9×S, and its motion, 3n×S) ↦ second derivative by n coordinates, n×n."""
     hessian, motion = ca.MX.sym("hessian", 9, sections), ca.MX.sym("motion", 3 * count, sections)
     components = ca.vertsplit(motion, count)
     entries = ca.vertsplit(hessian)

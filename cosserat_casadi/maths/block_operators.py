@@ -43,7 +43,7 @@ def block_diagonal(blocks: Matrix, pattern: ca.Sparsity) -> Matrix:
     if pattern.nnz() == 0:
         return ca.DM(*shape)
     block_rows, block_columns = (np.asarray(indices) for indices in pattern.get_triplet())
-    # What CasADi knows to be zero it may have left out: zero is an entry like any other here.
+    # CasADi may have dropped structural zeros: here zeros are entries like any other.
     blocks = ca.project(blocks, ca.repmat(pattern, 1, points))
     # Entry (r, c) of the block of a point stands in the diagonal block (r, c), on the row of that point.
     point = np.repeat(np.arange(points), pattern.nnz())
@@ -94,14 +94,14 @@ def sum_of_products(*factors: tuple[Matrix, Matrix]) -> Matrix:
 
 
 def with_product(total: Matrix, left: Matrix, right: Matrix) -> Matrix:
-    """A sum and a product left right more, added while it is formed."""
+    """A sum plus a product left right, which is added while it is formed."""
     pattern = total.sparsity() + ca.mtimes(left.sparsity(), right.sparsity())
     added: Matrix = ca.mac(left, right, ca.project(total, pattern))
     return added
 
 
 def cumulative_sum(columns: AnyMatrix, points: int) -> AnyMatrix:
-    """Running sums over the points of stacked fields, one field a column."""
+    """Cumulative sums over the points of stacked fields, one field in each column."""
     # Made dense first: CasADi 3.8.2 sums a sparse MX wrongly.
     parts = ca.vertsplit(columns, points)
     sums = [ca.cumsum(ca.densify(part), 0) for part in parts]
@@ -109,7 +109,7 @@ def cumulative_sum(columns: AnyMatrix, points: int) -> AnyMatrix:
 
 
 def reversed_places(columns: AnyMatrix, points: int) -> AnyMatrix:
-    """Stacked fields with the order of the points turned round."""
+    """Stacked fields with the points in reverse order."""
     parts = ca.vertsplit(columns, points)
     turned = [part[::-1, :] for part in parts]
     return ca.vertcat(*turned)
@@ -118,9 +118,9 @@ def reversed_places(columns: AnyMatrix, points: int) -> AnyMatrix:
 def mirror_factors(matrix: FloatArray, mirror: Indices, signs: FloatArray, parities: FloatArray) -> tuple[ca.DM, ca.DM]:
     """Factors (fold, half) with foldᵀ half = matrix, where products with even and odd columns cost half.
 
-    Row mirror[r] of column j is signs[r]·parities[j] times its row r. Even columns meet signed sums of mirrored rows,
-    odd ones differences: ``fold`` forms both, ``half`` holds the entries, without entries that are rounding errors of
-    zero. See the end of docs/theory.md, section 7.
+    Row mirror[r] of column j is signs[r]·parities[j] times its row r. Even columns multiply signed sums of mirrored
+    rows, odd columns their differences: ``fold`` forms both, ``half`` has the entries, without zeros by rounding. See
+    the end of docs/theory.md, section 7.
 
     Args:
         matrix: k×n.
@@ -138,8 +138,8 @@ def mirror_factors(matrix: FloatArray, mirror: Indices, signs: FloatArray, parit
     pair_signs = signs[first]
     even = parities > 0
     mirrored = pair_signs[:, None] * matrix[second]
-    # Half of the sum is the even part of a column, half of the difference the odd one: what rounding left in the
-    # other is cut.
+    # Half of the sum is the even part of a column, half of the difference the odd part: the other part is rounding and
+    # dropped.
     sums = (matrix[first] + mirrored) / 2 * even
     differences = (matrix[first] - mirrored) / 2 * ~even
     # A row that mirrors itself is zero in the columns of the other parity.

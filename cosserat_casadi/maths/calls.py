@@ -12,7 +12,7 @@ import numpy as np
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 
 MOST_MAPPED = 64
-"""Maps of functions over many arguments that are kept: as many as a few searches for modes ask for."""
+"""Number of kept maps of functions over many arguments: enough for a few searches for modes."""
 
 Pattern = tuple[tuple[int, int], list[int], list[int]]
 """Shape of a matrix, and rows and columns of its entries, column after column."""
@@ -23,8 +23,8 @@ KEPT = {"never_inline": True}
 ONE_DIRECTION = {"max_num_dir": 1}
 """Options of kernels: derivatives along several directions are as many calls of one function, not one long function.
 
-CasADi differentiates kernels itself where rotations follow from the literal linear system. The C of a joint,
-or of a material's law, would be megabytes otherwise, which compilers take minutes for.
+CasADi differentiates kernels itself if rotations follow from the literal linear system. The C of a joint, or of a
+material's law, would otherwise have megabytes, which take compilers minutes.
 """
 
 
@@ -37,10 +37,10 @@ def in_scalars(function: ca.Function, name: str) -> ca.Function:
 def with_shared_terms(
     name: str, symbols: Sequence[Matrix], results: Sequence[Matrix], *words: list[str]
 ) -> ca.Function:
-    """A function symbols ↦ results whose equal terms are one term; words are names of its arguments and results.
+    """The function symbols ↦ results with equal terms shared; further words name its arguments and results.
 
-    Where results make one call several times, CasADi before 3.8 may merge these calls into one that gives a number
-    twice, and refuse it. It does not where columns that make the call once each are merged one after the other.
+    If results make one call several times, CasADi before 3.8 may merge these into a call with a repeated output, and
+    refuse it. It does not if columns that make the call once each are merged one after the other.
     """
     try:
         return ca.Function(name, [*symbols], ca.cse([*results]), *words)
@@ -61,9 +61,9 @@ def with_dense_results(function: ca.Function, name: str) -> ca.Function:
 
 
 def functions_within(function: ca.Function) -> list[ca.Function]:
-    """The functions that a function calls, deep inside too, once each.
+    """The functions that a function calls, directly or not, once each.
 
-    CasADi 3.7 does not list what a map maps.
+    CasADi 3.7 does not list the function of a map.
     """
     known: dict[int, ca.Function] = {}
     callers = [function]
@@ -79,9 +79,9 @@ def functions_within(function: ca.Function) -> list[ca.Function]:
 
 
 def chooses(function: ca.Function) -> bool:
-    """Whether a function calls another one, deep inside too, or leaves it out, by a value.
+    """Whether a function, directly or not, calls another one depending on a value.
 
-    Written as scalars, or as a program without branches, it would compute all that it may leave out.
+    Expanded to scalars, or to a program without branches, it would compute all branches.
     """
     return any(called.class_name() == "Switch" for called in functions_within(function))
 
@@ -99,7 +99,7 @@ def evaluated(function: ca.Function, *arguments: FloatArray, results: int | None
     # CasADi maps over one argument at least; a motion that never started has none.
     if count == 0:
         return [np.zeros((0, *shape)) for shape, _, _ in patterns]
-    # CasADi makes its matrices of arrays, and arrays of its matrices, entry by entry: that takes longer than the calls.
+    # CasADi converts arrays to matrices and back entry by entry, which takes longer than the calls.
     buffer, evaluate = _mapped(function, count).buffer()
     given = [np.ascontiguousarray(values, dtype=float).ravel() for values in arguments]
     made = [np.zeros(count * len(rows)) for _, rows, _ in patterns]
@@ -113,7 +113,7 @@ def evaluated(function: ca.Function, *arguments: FloatArray, results: int | None
 
 @lru_cache(maxsize=MOST_MAPPED)
 def _mapped(function: ca.Function, count: int) -> ca.Function:
-    """A function at so many arguments: CasADi makes it anew unless it is kept, which may take longer than its call."""
+    """A function mapped over ``count`` arguments; it is kept, since making it may take longer than its call."""
     return function.map(count)
 
 

@@ -4,7 +4,7 @@ An element ends where something jumps (a point load), so every field is smooth i
 accuracy is kept. The node at a break appears twice, as the left and as the right limit. With one element this is
 the plain Chebyshev grid. See docs/theory.md, section 3.
 
-Elements may end elsewhere on the rod than where the grid was made for, at expressions of parameters even. The grid is
+Elements may end at other abscissae of the rod than those of the grid, also at expressions of parameters. The grid is
 then a reference: integrals run over its coordinate, along which each element has its own rate dX of the rod.
 """
 
@@ -34,7 +34,7 @@ from cosserat_casadi.maths.numbers import (
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 
 Indices = npt.NDArray[np.int64]
-"""Indices of rows: of nodes, of intervals, of sections."""
+"""Indices of nodes, intervals or sections."""
 
 
 @dataclass(frozen=True)
@@ -42,10 +42,10 @@ class Grid:
     """Elements on [0, 1] with the same number N of Chebyshev intervals, and so of N + 1 nodes, each.
 
     Attributes:
-        breaks: element ends in the coordinate that integrals run over, ascending, first 0 and last 1.
+        breaks: element ends in the coordinate of the integrals, ascending, first 0 and last 1.
         intervals: Chebyshev intervals in each element, N ≥ 1.
-        ends: abscissae X of the same element ends on the rod, ascending, numbers or expressions; None where they are
-            the breaks.
+        ends: abscissae X of these element ends on the rod, ascending, numbers or expressions; None if they are the
+            breaks.
     """
 
     breaks: tuple[float, ...]
@@ -90,7 +90,7 @@ class Grid:
 
     @cached_property
     def rates(self) -> Numbers | None:
-        """Width of each element on the rod relative to that in the coordinate, shape (E,); None where they are one."""
+        """Width of each element on the rod over its width in the coordinate, shape (E,); None if all are one."""
         if self.ends is None:
             return None
         widths = [end - start for start, end in pairwise(self.ends)]
@@ -104,7 +104,7 @@ class Grid:
         return np.repeat(np.arange(self.elements, dtype=np.int64), self._nodes_per_element)
 
     def rates_in(self, elements: Indices) -> Numbers | None:
-        """Rate of the rod's abscissa in elements, shape (len(elements),); None where it is one."""
+        """Derivative of the rod's abscissa by the coordinate in elements, shape (len(elements),); None if it is one."""
         rates = self.rates
         if rates is None or not is_symbolic(rates):
             return None if rates is None else known(rates)[elements]
@@ -124,7 +124,7 @@ class Grid:
         return np.asarray(known(starts)[elements] + from_start * known(rates))
 
     def in_coordinate(self, X: FloatArray, elements: Indices) -> FloatArray:
-        """Places in the coordinate of abscissae X of the rod that lie in elements with known ends, shape (k,)."""
+        """Coordinates of abscissae X of the rod in elements with known ends, shape (k,)."""
         if self.ends is None:
             return X
         starts = known(as_vector(self.places[:-1]))[elements]
@@ -147,7 +147,7 @@ class Grid:
         for element, (start, end) in enumerate(self._spans()):
             rows = self._nodes_of(element)
             matrix[rows, rows] = (end - start) * local
-            # What the elements before it add is the same at all of its nodes.
+            # The elements before it add the same number at all of its nodes.
             before = slice(0, rows.start)
             matrix[rows, before] = self.weights[before]
         return matrix
@@ -155,7 +155,7 @@ class Grid:
     def integrated(self, fields: Matrix) -> Matrix:
         """Integrals from the base of fields at the nodes, f Sᵀ, k×M.
 
-        Within an element, with what the elements before it add: S itself is half full.
+        Computed within each element plus the integrals of the elements before it, since S itself is half full.
         """
         integrals: list[Matrix] = []
         for start, own in zip(self._starts, ca.horzsplit(fields, self._nodes_per_element), strict=True):
@@ -208,17 +208,17 @@ class Grid:
 
     @cached_property
     def mirrored_intervals(self) -> Indices:
-        """Index of the interval that mirrors each one about the middle of its element, shape (E·N,)."""
+        """Index of the mirror image of each interval about the middle of its element, shape (E·N,)."""
         intervals = self.elements * self.intervals
         return self._mirrored(intervals)
 
     @cached_property
     def mirrored_nodes(self) -> Indices:
-        """Index of the node that mirrors each one about the middle of its element, shape (M,)."""
+        """Index of the mirror image of each node about the middle of its element, shape (M,)."""
         return self._mirrored(self.size)
 
     def node_at(self, abscissa: Scalar) -> int:
-        """Index of the node that ends the element whose tip is at ``abscissa``, an element end; 0 of the base."""
+        """Index of the last node of the element that ends at ``abscissa``; 0 for the base."""
         elements_before = self._end_number(abscissa)
         return max(elements_before * self._nodes_per_element - 1, 0)
 
@@ -230,7 +230,7 @@ class Grid:
         return np.flatnonzero((elements >= first) & (elements < behind_last))
 
     def _end_number(self, abscissa: Scalar) -> int:
-        """Place of an element end among all: an expression is found as that which the grid was given."""
+        """Index of an element end; an expression must be the object that the grid has."""
         for number, place in enumerate(self.places):
             if is_same(place, abscissa):
                 return number
@@ -249,7 +249,7 @@ class Grid:
         matrix = np.zeros((len(abscissae), self.size))
         elements = self.element_of(abscissae)
         spans = list(pairwise(self.known_places))
-        # All rows of an element at once: where many sections are looked at, this is most of the work.
+        # All rows of an element at once, since this is most of the work for many sections.
         for element in np.unique(elements).tolist():
             rows = np.flatnonzero(elements == element)
             start, end = spans[element]
@@ -272,7 +272,7 @@ class Grid:
         values: Matrix = ca.MX.zeros(fields.shape[0], abscissae.shape[0])
         spans = zip(pairwise(self.places), pairwise(inner), ca.horzsplit(fields, self._nodes_per_element), strict=True)
         for (start, end), (least, most), own in spans:
-            # Elsewhere the element's value at its end stands for it, so that nothing overflows before it is left out.
+            # Outside of an element its value at the end is taken, so that nothing overflows before it is dropped.
             local = ca.fmin(ca.fmax((abscissae - start) / (end - start), 0), 1)
             lies_here = (abscissae > least) * (abscissae <= most)
             basis = as_matrix(legendre_table(self._nodes_per_element, local)).T
@@ -295,7 +295,7 @@ class Grid:
         return slice(first, first + self._nodes_per_element)
 
     def _mirrored(self, count: int) -> Indices:
-        """The numbers 0 … count − 1, in equal runs, one an element, with the order turned round in each."""
+        """The numbers 0 … count − 1, in equal runs, one for each element, each in reverse order."""
         numbers = np.arange(count, dtype=np.int64)
         by_element = numbers.reshape(self.elements, -1)
         mirrored = by_element[:, ::-1]

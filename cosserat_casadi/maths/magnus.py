@@ -6,9 +6,9 @@ itself, cut where the order is reached; order eight is nested as in S. Blanes, F
 integrators based on the Magnus expansion*, BIT 40 (2000). The series is usually written for Y' = A Y; here the rate
 multiplies from the right, so that the commutator [a, b] becomes −a × b.
 
-Why this and not a linear solve: the increments are rotations to rounding whatever the step, the cost is linear in the
-number of nodes, and the derivative of the product of exponentials is known in closed form. See docs/theory.md, sections
-4 and 7.
+In contrast to a linear solve the increments are rotations to rounding for every step, the cost is linear in the number
+of nodes, and the derivative of the product of exponentials is known in closed form. See docs/theory.md, sections 4 and
+7.
 
 Rates of the rotation exp(Ω^) of one interval and of its derivative T are by series without branches. T = 1 + b Ω^ + c
 Ω^² depends on time through Ω and, by its factors b and c, on u = θ². With b(u) = (1 − cos θ)/θ² and c(u) = (θ − sin
@@ -67,7 +67,7 @@ class IncrementRates:
 
     @property
     def spin(self) -> Matrix:
-        """The angular velocity b = T Ω̇ that an interval that turns by exp(Ω^) adds, 3×1, rad/s."""
+        """The angular velocity b = T Ω̇ that an interval with the rotation exp(Ω^) adds, 3×1, rad/s."""
         linear, cubic = self._linear[0], self._cubic[0]
         turned = cross(self.increment.omega, self.omega_rate)
         return self.omega_rate + linear * turned + cubic * cross(self.increment.omega, turned)
@@ -111,7 +111,7 @@ class IncrementRates:
         return self._factor(self.increment.cubic, _CUBIC)
 
     def _factor(self, value: Matrix, derivatives: tuple[list[float], list[float]]) -> Orders:
-        """A factor and its rates from the series of its derivatives with u."""
+        """A factor and its rates from the series of its derivatives by u."""
         omega, rate, acceleration = self._omega
         square = ca.sumsqr(omega)
         square_rate = 2 * ca.dot(omega, rate)
@@ -130,7 +130,7 @@ def _product(factor: Orders, vector: Orders) -> Orders:
 
 
 def coefficient_count(order: int) -> int:
-    """Number of Taylor coefficients α that a method of this order reads: order / 2."""
+    """Number of Taylor coefficients α for a method of this order: order / 2."""
     if order not in ORDERS:
         raise ValueError(f"the order of a Magnus method is one of {ORDERS}, got {order}")
     return order // 2
@@ -267,8 +267,8 @@ def horner(coefficients: Sequence[float], u: AnyMatrix) -> AnyMatrix:
 class Increment:
     """The rotation exp(Ω^) of one interval and its derivatives, by series without branches.
 
-    Exact to rounding for |Ω| ≤ 2 rad. A grid that turns by more than that between neighbouring nodes resolves nothing;
-    the value stays finite. The factors depend on the angle alone, so that they serve in any frame.
+    They are exact to rounding for |Ω| ≤ 2 rad. A grid with larger turns between neighbouring nodes does not resolve the
+    rod; the values stay finite. The factors depend on the angle alone, and so hold in every frame.
 
     Attributes:
         omega: rotation vector Ω, 3×1, rad.
@@ -284,7 +284,7 @@ class Increment:
     def quaternion(self) -> Matrix:
         """Quaternion of exp(Ω^), 4×1.
 
-        The cosine of the half angle is (sin θ / θ) / (2 sin(θ/2) / θ): what T needs takes the place of its series.
+        The cosine of the half angle is (sin θ / θ) / (2 sin(θ/2) / θ), from the factors of T, without a further series.
         """
         square = ca.sumsqr(self.omega)
         sine_over_angle = 1 - square * self.cubic
@@ -300,14 +300,14 @@ class Increment:
         return ca.DM.eye(3) + linear + cubic @ hat(self.omega)
 
     def pulled(self, moment: Matrix) -> Matrix:
-        """The product Tᵀ M: what a moment M (3×1, in the frame in which the increment begins) does on δΩ, 3×1."""
+        """The product Tᵀ M, 3×1: generalised moment on δΩ of a moment M, 3×1, in the frame of the increment's start."""
         # Horner's rule in Ω^: Tᵀ = 1 − b Ω^ + c Ω^² = 1 + Ω^ (c Ω^ − b).
         turned = self.cubic * cross(self.omega, moment)
         bent = turned - self.linear * moment
         return moment + cross(self.omega, bent)
 
     def stiffness(self, moment: Matrix) -> Matrix:
-        """The form V with ∂(Tᵀ M)/∂Ω = Tᵀ V T: how the work of a moment on an increment changes with it, 3×3.
+        """The form V with ∂(Tᵀ M)/∂Ω = Tᵀ V T: change, with the increment, of a moment's work on it, 3×3.
 
         V = ½ M^ − k (Ω^ M^ + M^ Ω^) + (M·Ω) h/(2b) Ω^², where h = (c − 2 (1 − 2 b)/θ²)/θ² and k = (c + θ² h)/(4 b).
         Only Ω and M enter, so that the form turns with them into any frame (docs/theory.md, section 7).

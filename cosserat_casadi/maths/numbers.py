@@ -1,4 +1,4 @@
-"""Numbers that are known, or expressions of parameters: NumPy arrays and CasADi's MX under one roof.
+"""Numbers that are known, or expressions of parameters: common functions for NumPy arrays and CasADi's MX.
 
 Known numbers stay NumPy, to the last bit; a number that depends on a parameter is an MX. A vector of k numbers is an
 array of shape (k,) or an MX of shape (k, 1), a table an array or an MX of shape (k, m).
@@ -29,7 +29,7 @@ ROUNDING = 1e-15
 """Share of the largest entry below which an entry is zero by orthogonality."""
 
 SAME = 1e-14
-"""Share that entries of one size differ by, from linear algebra that rounds."""
+"""Relative difference of equal entries by rounding in linear algebra."""
 
 
 IndexArray: TypeAlias = npt.NDArray[np.int64]
@@ -41,7 +41,7 @@ def is_symbolic(value: object) -> TypeIs[Matrix]:
 
 
 def is_same(one: Scalar, other: Scalar) -> bool:
-    """Whether two numbers are one: an expression is that which it is written as, and no number."""
+    """Whether two numbers are equal; an expression equals only an identical expression."""
     if is_symbolic(one) or is_symbolic(other):
         return is_symbolic(one) and is_symbolic(other) and bool(ca.is_equal(one, other))
     return bool(one == other)
@@ -58,7 +58,7 @@ def any_symbolic(values: Iterable[object]) -> bool:
 
 
 def known(numbers: Numbers) -> FloatArray:
-    """Numbers of which no parameter is part, as an array."""
+    """Numbers without parameters, as an array."""
     assert isinstance(numbers, np.ndarray), "asked for where no parameter is free"
     return numbers
 
@@ -81,7 +81,7 @@ def largest(values: Sequence[Scalar]) -> Scalar:
 
 
 def is_zero(value: Scalar | Numbers | Sequence[Scalar]) -> bool:
-    """Whether numbers are known to be zero, all of them."""
+    """Whether all numbers are known to be zero."""
     if isinstance(value, tuple | list):
         return all(is_zero(entry) for entry in value)
     if isinstance(value, ca.MX | ca.SX | ca.DM):
@@ -97,7 +97,7 @@ def as_matrix(numbers: Numbers) -> Matrix:
 
 
 def as_vector(values: Sequence[Scalar]) -> Numbers:
-    """Scalars as a vector; where one is an expression, zeros are not stored."""
+    """Scalars as a vector; if one is an expression, zeros are not stored."""
     if not any_symbolic(values):
         return np.asarray(values, dtype=float)
     entries = [value if isinstance(value, ca.MX) else ca.sparsify(ca.DM(value)) for value in values]
@@ -108,7 +108,7 @@ def side_by_side(columns: Sequence[Numbers]) -> Numbers:
     """Vectors of one length as the columns of a table."""
     if not any_symbolic(columns):
         return np.stack([known(own) for own in columns], axis=-1)
-    # What is zero is not stored.
+    # Zeros are not stored.
     return ca.horzcat(*[own if is_symbolic(own) else ca.sparsify(as_matrix(own)) for own in columns])
 
 
@@ -132,7 +132,7 @@ def stacked_rows(rows: Sequence[Numbers]) -> Numbers:
 
 
 def among(table: Numbers, columns: Sequence[int] | IndexArray, count: int) -> Numbers:
-    """A table of ``count`` columns: these columns of another, zero elsewhere; one of expressions stands for all."""
+    """A table with ``count`` columns: the given columns at their indices, zeros elsewhere."""
     if is_symbolic(table):
         chosen = ca.sparsify(ca.DM(np.eye(count)[np.asarray(columns)]))
         return as_matrix(repeated(table.T, len(columns))).T @ chosen
@@ -157,7 +157,7 @@ def row_times(factors: Numbers, numbers: Numbers) -> Numbers:
 
 
 def each_times(numbers: Numbers, factors: Numbers | None) -> Numbers:
-    """A vector, or each column of a table, entry by entry times factors, shape (k,); as it is without any."""
+    """A vector, or each column of a table, entry by entry times factors, shape (k,); unchanged without factors."""
     if factors is None or is_zero(numbers):
         return numbers
     if not any_symbolic([numbers, factors]):
@@ -175,7 +175,7 @@ def reciprocal(numbers: Numbers | None) -> Numbers | None:
 
 
 def repeated(numbers: Numbers, count: int) -> Numbers:
-    """A vector of ``count`` entries; a single entry, which stands for all, is repeated."""
+    """A vector of ``count`` entries; a single entry is repeated."""
     if numbers.shape[0] != 1 or count == 1:
         return numbers
     if is_symbolic(numbers):

@@ -39,7 +39,7 @@ class Pose:
         return Pose(position, quaternion_product(self.quaternion, inner.quaternion))
 
     def seen(self, outer: Pose) -> Pose:
-        """Pose of a frame of the outer frame, given in that, as this frame sees it."""
+        """Pose, in this frame, of a frame whose pose in the outer frame is ``outer``."""
         back = quaternion_conjugate(self.quaternion)
         position = rotate(back, outer.position - self.position)
         return Pose(position, quaternion_product(back, outer.quaternion))
@@ -51,7 +51,7 @@ class Pose:
         return Pose(-rotate(back, self.position), back)
 
     def varied(self, variation: Matrix) -> Pose:
-        """This pose after a small motion [δθ; δr] in the axes it is given in, 6×1, exact to first order."""
+        """This pose after a small motion [δθ; δr] in its outer axes, 6×1, exact to first order."""
         spin = ca.vertcat(0, variation[:3] / 2)
         quaternion = self.quaternion + quaternion_product(spin, self.quaternion)
         return Pose(self.position + variation[3:], quaternion)
@@ -91,14 +91,14 @@ class NumericPose:
 
 
 def written_pose(position: Numbers, quaternion: Numbers) -> NumericPose | Pose:
-    """A pose of numbers, or of expressions where one of its parts is an expression."""
+    """A pose of numbers, or of expressions if one of its parts is an expression."""
     if any_symbolic([position, quaternion]):
         return Pose(as_matrix(position), as_matrix(quaternion))
     return NumericPose(known(position), known(quaternion))
 
 
 def numeric(pose: Pose) -> NumericPose:
-    """The numbers of a pose whose expressions are constant."""
+    """The numbers of a pose with constant expressions."""
     position, quaternion = (ca.evalf(ca.MX(ca.densify(part))).full()[:, 0] for part in (pose.position, pose.quaternion))
     return NumericPose(np.asarray(position), np.asarray(quaternion))
 

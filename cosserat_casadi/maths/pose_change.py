@@ -1,7 +1,7 @@
-"""How far apart two poses are: what a tolerance bounds.
+"""Distance of two poses, which a tolerance bounds.
 
-Positions count by their distance over the length of the rod, rotations by the angle of the rotation that leads from one
-to the other. Neither depends on the axes that poses are given in.
+Positions count by their distance over the length of the rod, rotations by the angle of the relative rotation. Neither
+depends on the axes of the poses.
 
 A *change* is an array of rows of three numbers, each of which counts by its norm: displacements over the length and
 rotation vectors of sections, lengths of cables as rows with one number. Small changes add up row by row.
@@ -16,11 +16,11 @@ from cosserat_casadi.maths.typing import FloatArray
 
 
 def rotation_vectors(first: FloatArray, second: FloatArray) -> FloatArray:
-    """Rotations that lead from some orientations to others: axes times angles, in the axes of the first.
+    """Rotation vectors from some orientations to others: axes times angles, in the axes of the first.
 
     Args:
         first: unit quaternions world_Q_section, w x y z, shape (4,) or (k, 4).
-        second: as many others.
+        second: other unit quaternions, in the shape of ``first``.
 
     Returns:
         shape (3,) or (k, 3), rad; the norms are in [0, π].
@@ -43,7 +43,7 @@ def rotation_angles(first: FloatArray, second: FloatArray) -> FloatArray:
 
     Args:
         first: unit quaternions, w x y z, shape (4,) or (k, 4).
-        second: as many others.
+        second: other unit quaternions, in the shape of ``first``.
     """
     return np.asarray(np.linalg.norm(rotation_vectors(first, second), axis=-1))
 

@@ -1,8 +1,8 @@
-"""Tables of values over time or along a rod as piecewise polynomials, and how near to zero such a polynomial comes.
+"""Tables of values over time or along a rod as piecewise polynomials, and the least norm of such polynomials.
 
 Monotone cubic curves through points, and their integrals, are by the method of Fritsch and Carlson (1980). Slopes at
 the points are weighted harmonic means of the slopes of the chords beside them (Fritsch and Butland, 1984), so that a
-curve through points that rise never falls. Beyond its ends a curve goes on straight.
+curve through points that rise never falls. Beyond its ends a curve continues straight.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ _LEAST_NORM_ERROR = 1e-14
 """Error of the least norm as a share of the largest norm: some tens of rounding errors."""
 
 _HALVINGS = 53
-"""Halvings of a piece: as many as a number has binary digits, so that its halves are no longer told apart."""
+"""Most halvings of a piece: the number of binary digits, after which its halves cannot be distinguished."""
 
 
 def table_coefficients(knots: FloatArray, values: FloatArray, interpolation: Interpolation) -> FloatArray:
@@ -124,7 +124,7 @@ def spline_basis(knots: FloatArray, X: Numbers) -> Numbers:
 
 
 def least_norm(path: Callable[[FloatArray], FloatArray], cuts: FloatArray) -> tuple[float, float]:
-    """Least norm of a path of polynomials, and the time of it, s; infinite where the path is no number.
+    """Least norm of a path of polynomials, and its time, s; infinite if the path is NaN.
 
     Pieces are halved, and those kept that can hold a lesser norm than the least that was met at an end: the squared
     norm of a piece is nowhere less than the least of its coefficients in Bernstein's basis. Halving averages control
@@ -145,7 +145,7 @@ def least_norm(path: Callable[[FloatArray], FloatArray], cuts: FloatArray) -> tu
     if not np.any(finite):
         return float("inf"), float(cuts[0])
     starts, widths, points = starts[finite], widths[finite], _CONTROL @ values[finite]
-    # A power of two changes no digit: the norms of very small and very large values can be squared.
+    # Scaling by a power of two is exact: norms of very small and very large values can then be squared.
     exponent = np.frexp(np.abs(points).max())[1]
     points = np.ldexp(points, -exponent)
     allowed = _LEAST_NORM_ERROR * np.linalg.norm(points, axis=2).max()

@@ -1,6 +1,6 @@
 """Types of matrices that the mathematics takes and returns, and a check of their shapes.
 
-Shapes are checked where matrices enter a record: CasADi broadcasts scalars in silence.
+Shapes are checked as matrices enter a record, since CasADi broadcasts scalars silently.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ Columns = TypeVar("Columns", ca.SX, ca.MX, ca.DM, Matrix, FloatArray)
 
 
 def check_shape(name: str, matrix: Matrix | FloatArray, rows: int | None, columns: int | None) -> None:
-    """Refuse a matrix of another shape than wanted.
+    """Refuse a matrix with another shape.
 
     Args:
         name: what the matrix is, for the message.
@@ -41,7 +41,7 @@ def check_shape(name: str, matrix: Matrix | FloatArray, rows: int | None, column
         ValueError: the shape differs, or a NumPy array has not two axes.
     """
     shape = matrix.shape
-    # Only NumPy has arrays of another number of axes.
+    # Only NumPy has arrays with other numbers of axes.
     if len(shape) == 2:
         rows_agree = rows in (None, shape[0])
         columns_agree = columns in (None, shape[1])

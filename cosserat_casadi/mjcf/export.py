@@ -1,12 +1,12 @@
 """A scene as a model of MuJoCo, in its XML format MJCF.
 
-Rods are chains of rigid links (links.py). Hinges and slides in the middle of a piece have the order of the strains in
-every other piece, and the reverse in the next: rotations do not commute, and what an order adds to the strain of one
-piece the next one takes away. Bodies hang on the links that carry them; joints that close a loop are constraints.
+Rods are chains of rigid links (links.py). The order of the hinges and slides in the middle of a piece is reversed from
+piece to piece: rotations do not commute, and the errors of the two orders in the strain cancel. Bodies are children of
+links; joints that close a loop are constraints.
 
-Inputs of the scene are controls of the same names, with the values of the scene in the keyframe ``scene``. A model
-without loops begins unloaded. One with loops begins there at the equilibrium of the scene: unloaded, its loops may be
-open by the length of a rod.
+Inputs of the scene are controls of the same names, with the values of the scene in the keyframe ``scene``. In this
+keyframe a model without loops is unloaded, and a model with loops is at the equilibrium of the scene: when unloaded,
+the gaps of its loops may be as large as the length of a rod.
 """
 
 from __future__ import annotations
@@ -46,40 +46,40 @@ SUFFIXES = (".xml", ".mjcf")
 """Suffixes of the file."""
 
 LINKS = 20
-"""Pieces of a rod by default."""
+"""Default number of pieces of a rod."""
 
 INTERVALS = 40
-"""Intervals of the grid that gives the unloaded shape of a rod."""
+"""Number of intervals of the grid for the unloaded shape of a rod."""
 
 TWIST_AND_SHEAR = frozenset({2, 3, 4})
-"""Numbers of the torsion and of the shears, by which a channel grows longer than its volume over its area."""
+"""Indices of torsion and shears, which make a channel longer than its volume over its area."""
 
 STIFF = 1e3
-"""Stiffness of a drive, or of a cable of given length, over the stiffness of the rod that it moves."""
+"""Stiffness of a drive, or of a cable of given length, over the stiffness of its rod."""
 
 CARRIAGE = 1e-2
-"""Mass of what slides or turns to close a loop, over the mass of rods and bodies: the lighter, the softer a weld."""
+"""Mass of the carriages that close loops, over the mass of rods and bodies: a lighter one makes the weld softer."""
 
 LEAST = 1e-9
 """Least mass, over the mass of all rods; least moments of inertia, over this mass and the square of the longest rod."""
 
 LEAST_MOVED = 2e-15
-"""Least mass and moments of inertia of what moves, kg and kg m²: MuJoCo refuses half of that."""
+"""Least mass and moments of inertia of moving bodies, kg and kg m²: MuJoCo refuses half of this."""
 
 STEP = 1e-3
-"""Time step, s: the integrator ``discrete`` is implicit in springs, whose frequencies any longer step would exceed."""
+"""Time step, s, too long for explicit steps with stiff springs: the integrator ``discrete`` is implicit in springs."""
 
 CLOSING_TIME = 2 * STEP
-"""Time in which constraints close their gaps, s: the least that MuJoCo takes."""
+"""Time constant of constraints, s: the smallest one accepted by MuJoCo."""
 
 HARD = "0.9999 0.9999 0.001 0.5 2"
-"""Impedance of constraints: the largest that MuJoCo takes."""
+"""Impedance of constraints: the largest one accepted by MuJoCo."""
 
 NO_STOP = 1e6
-"""Coordinate of the stop on the side that has none, rad or m."""
+"""Coordinate of the stop on a side without one, rad or m."""
 
 MOST_OBSTACLES = 31
-"""Obstacles that MuJoCo can tell apart, which numbers them by bits."""
+"""Largest number of obstacles that MuJoCo can distinguish, by bits."""
 
 
 @dataclass(frozen=True)
@@ -87,15 +87,15 @@ class Mjcf:
     """A model of MuJoCo.
 
     Attributes:
-        text: of the XML file.
-        left_out: a sentence for each thing of the scene that the model does not have, or has in another way.
+        text: text of the XML file.
+        left_out: a sentence for each object of the scene that is missing in the model or differs.
     """
 
     text: str
     left_out: tuple[str, ...]
 
     def write(self, path: str | Path) -> None:
-        """Write the file, whole or not at all.
+        """Write the file atomically.
 
         Raises:
             ExportError: the name does not end in one of SUFFIXES.
@@ -107,7 +107,7 @@ class Mjcf:
 
 
 def check_mjcf(path: str | Path) -> None:
-    """Refuse a file that could not be written, before any work is done for it.
+    """Refuse a file that cannot be written, before the model is made.
 
     Raises:
         ExportError: the name does not end in one of SUFFIXES.
@@ -119,11 +119,11 @@ def check_mjcf(path: str | Path) -> None:
 
 
 def mjcf_of(scene: scenes.Scene, links: int = LINKS) -> Mjcf:
-    """A scene as a model of MuJoCo; one with joints that close loops, or supports, is solved for where it begins.
+    """A scene as a model of MuJoCo; with loops or supports the scene is solved for the initial state.
 
     Args:
-        scene: a validated scene, whose parameters have their values.
-        links: pieces of each rod, about: one ends at every disk, hole of a tendon, joint and wrench.
+        scene: a validated scene, with values for its parameters.
+        links: approximate number of pieces of each rod; pieces end at disks, holes of tendons, joints and wrenches.
 
     Raises:
         SceneError: a rod has no mass, or the scene has tubes.
@@ -133,7 +133,7 @@ def mjcf_of(scene: scenes.Scene, links: int = LINKS) -> Mjcf:
 
 
 def _numbers(values: Sequence[float] | FloatArray | float) -> str:
-    """Numbers as an attribute has them."""
+    """Numbers as the text of an attribute."""
     return " ".join(f"{value + 0.0:.12g}" for value in np.atleast_1d(np.asarray(values, dtype=float)))
 
 
@@ -143,12 +143,12 @@ def _place(pose: NumericPose) -> dict[str, str]:
 
 
 def _cylinder(radius: float, thickness: float) -> dict[str, str]:
-    """Attributes of a disk, which has some thickness in MuJoCo."""
+    """Attributes of a disk, with a thickness above zero."""
     return {"type": "cylinder", "size": _numbers([radius, max(thickness, 1e-3 * radius) / 2])}
 
 
 def _solved(poses: SolvedPoses) -> NumericPose:
-    """The pose of a section or a body in an equilibrium, world axes."""
+    """Pose of a section or a body in an equilibrium, world axes."""
     return NumericPose(poses.position, poses.quaternion / np.linalg.norm(poses.quaternion))
 
 
@@ -159,12 +159,12 @@ def _turned(position: FloatArray) -> NumericPose:
 
 @dataclass(frozen=True)
 class _Carrier:
-    """An element that others hang on: the world, a link or a body.
+    """A parent element: the world, a link or a body.
 
     Attributes:
-        element: of XML.
-        frame: its pose in the unloaded scene, world axes.
-        name: of its body in MuJoCo.
+        element: XML element.
+        frame: pose in the unloaded scene, world axes.
+        name: name of its body in MuJoCo.
     """
 
     element: ET.Element
@@ -174,13 +174,13 @@ class _Carrier:
 
 @dataclass(frozen=True)
 class _Moved:
-    """A body of MuJoCo that joints carry.
+    """A body of MuJoCo with joints.
 
     Attributes:
-        carrier: name of what carries it.
-        place: its pose there at zero coordinates.
-        joints: in their order.
-        near: coordinates near which it begins, shape (n,), rad and m.
+        carrier: name of its parent.
+        place: pose relative to the parent at zero coordinates.
+        joints: joints in their order.
+        near: initial guess of the coordinates, shape (n,), rad and m.
     """
 
     carrier: str
@@ -191,7 +191,7 @@ class _Moved:
 
 @dataclass
 class _Robot:
-    """A model that is being written."""
+    """A model under construction."""
 
     scene: scenes.Scene
     links: int
@@ -220,7 +220,7 @@ class _Robot:
         self.unloaded = self._unloaded()
 
     def _unloaded(self) -> UnloadedScene:
-        """The unloaded scene, on elements that end where links do."""
+        """The unloaded scene, with elements that end at the ends of links."""
         discrete = {}
         for rod in self.scene.rods:
             ends = element_ends(self.scene, rod.name)
@@ -260,7 +260,7 @@ class _Robot:
         return Mjcf(ET.tostring(self.root, encoding="unicode") + "\n", tuple(self.left_out))
 
     def _begin(self) -> dict[str, str]:
-        """Attributes of the keyframe that begin a model with loops at the equilibrium of the scene."""
+        """Attributes of the keyframe for a model with loops: the equilibrium of the scene."""
         solution = solve(self.scene)
         assert isinstance(solution, Solution), "tubes are refused before"
         if not solution.converged:
@@ -283,7 +283,7 @@ class _Robot:
     # The tree of rods and bodies
 
     def _put_tree(self) -> None:
-        """Hang rods and bodies on the world and on each other, carriers first."""
+        """Add rods and bodies to the tree, parents first."""
         rods = list(self.scene.rods)
         bodies = list(self.scene.bodies)
         while rods or bodies:
@@ -291,13 +291,13 @@ class _Robot:
             rods = [rod for rod in rods if not self._put_rod(rod)]
             bodies = [body for body in bodies if not self._put_body(body)]
             if len(rods) + len(bodies) == before:
-                # Rods that start on a body which nothing else holds: it floats.
+                # Rods that start on a body without other holders: the body is floating.
                 body = bodies.pop(0)
                 frame = self.unloaded.body_frame(body.name).start
                 self._body(self.world, frame, body, (("freejoint", {}),))
 
     def _carried(self, rod: scenes.Rod) -> tuple[_Carrier | None, int | None]:
-        """Carrier of the base of a rod, None where it is missing yet, and the place of the joint between them."""
+        """Parent of the base of a rod, None if it is not in the tree yet, and the pose of the joint between them."""
         for index, joint in enumerate(self.scene.joints):
             if joint.rod == rod.name and joint.holds_base:
                 if joint.body is not None:
@@ -311,7 +311,7 @@ class _Robot:
         return self._link(rod.base.rod, rod.base.at) if (rod.base.rod, 0.0) in self.carriers else None
 
     def _put_rod(self, rod: scenes.Rod) -> bool:
-        """Hang the links of a rod on what carries it; whether that is there."""
+        """Add the links of a rod to its parent; returns whether the parent is in the tree."""
         carrier, index = self._carried(rod)
         if carrier is None:
             return False
@@ -329,11 +329,11 @@ class _Robot:
         return True
 
     def _strains(self, rod: scenes.Rod, link: Link, number: int) -> Iterator[MjcfJoint]:
-        """Joints of the strains of a piece, in the axes of the link after it."""
+        """Joints for the strains of a piece, in the axes of the next link."""
         piece = link.piece
         assert piece is not None, "a link after the first"
         middle = link.frame.inverse.then(piece.middle)
-        # Slides first, then hinges: the reverse in every other piece.
+        # Slides before hinges; reversed in every other piece.
         order = sorted(rod.admitted, key=lambda strain: (strain < 3, strain), reverse=bool(number % 2))
         for strain in order:
             attributes = {
@@ -372,7 +372,7 @@ class _Robot:
         return put
 
     def _geom(self, carrier: _Carrier, shape: dict[str, str], colour: str, meets: Sequence[bool]) -> None:
-        """A shape on a carrier; ``meets``: which of the obstacles it does."""
+        """Add a shape to a carrier; ``meets``: the obstacles that it can touch."""
         bits = sum(1 << i for i, is_met in enumerate(meets) if is_met)
         style = {"contype": str(bits), "conaffinity": "0", "rgba": colour}
         ET.SubElement(carrier.element, "geom", {**shape, **style})
@@ -386,7 +386,7 @@ class _Robot:
         joints: Sequence[MjcfJoint],
         in_carrier: NumericPose | None = None,
     ) -> _Carrier:
-        """A body of MuJoCo on a carrier: where its frame is, or at another place in the carrier."""
+        """Add a body of MuJoCo to a carrier, at its frame, or at another pose in the carrier."""
         on_carrier = in_carrier or carrier.frame.inverse.then(frame)
         element = ET.SubElement(carrier.element, "body", {"name": name, **_place(on_carrier)})
         for tag, attributes in joints:
@@ -400,7 +400,7 @@ class _Robot:
         if joints and moments[0] < least:
             self.light.setdefault(name.split("/")[0], least)
         moments = np.maximum(moments, max(least, LEAST * moments[2]))
-        # Of thin links the largest is the sum of the others, but for rounding, and may not be more.
+        # For thin links the largest moment is the sum of the others up to rounding, and may not exceed it.
         moments[1] = max(moments[1], (1 + 1e-9) * moments[2] - moments[0])
         place = _place(NumericPose(inertia.centre, matrix_to_quaternion(axes)))
         ET.SubElement(element, "inertial", {**place, "mass": _numbers(inertia.mass), "diaginertia": _numbers(moments)})
@@ -417,9 +417,9 @@ class _Robot:
         return sum(link.inertia.mass for links in self.rods.values() for link in links)
 
     def _put_body(self, body: scenes.Body) -> bool:
-        """Hang a body on the first of its joints whose other end is there; whether there is one."""
+        """Add a body to the tree by its first joint with a known other end; returns whether there is one."""
         frame = self.unloaded.body_frame(body.name).start
-        # A slide that is left to close a loop costs a carriage: it goes first.
+        # Slides are preferred: as a loop closure a slide needs a carriage.
         for index, joint in sorted(enumerate(self.scene.joints), key=lambda numbered: numbered[1].kind != "prismatic"):
             if body.name not in [place.body for place in joint.places] or joint.holds_base:
                 continue
@@ -431,7 +431,7 @@ class _Robot:
             carrier, there = end
             sense, axes = (1.0, carrier.frame) if is_carried else (-1.0, frame)
             joints = self._tree_joint(index, frame, frame.then(place).position, axes, sense)
-            # Several joints may pull it away from where this one alone would have it: this one is closed.
+            # The unloaded scene may place the body elsewhere, by several joints; here this joint is closed.
             closed = there.then(place.inverse)
             if joint.kind == "spherical":
                 closed = NumericPose(there.position - frame.rotation @ place.position, frame.quaternion)
@@ -440,7 +440,7 @@ class _Robot:
         return False
 
     def _other_end(self, joint: Any, body: str) -> tuple[_Carrier, NumericPose] | None:
-        """The carrier that holds a body by a joint, if it is there, and the place of the joint on it, world axes."""
+        """The carrier at the other end of a body's joint and the joint's pose there, world axes; None if missing."""
         if joint.carries is None:
             if (joint.rod, 0.0) not in self.carriers:
                 return None
@@ -475,14 +475,14 @@ class _Robot:
     def _tree_joint(
         self, index: int, frame: NumericPose, place: FloatArray, axes: NumericPose, sense: float
     ) -> list[MjcfJoint]:
-        """Joints of MuJoCo between a carrier and what hangs on it.
+        """Joints of MuJoCo between a carrier and its child.
 
         Args:
-            index: place of the joint in the scene's list.
-            frame: of what hangs on it, world axes.
-            place: of the joint, world axes, shape (3,), m.
-            axes: of the joint's axis, world axes.
-            sense: 1 where the section hangs on what holds it, −1 where that hangs on the section.
+            index: index of the joint in the scene.
+            frame: frame of the child, world axes.
+            place: position of the joint, world axes, shape (3,), m.
+            axes: axes of the joint, world axes.
+            sense: 1 if the section is the child of its holder, −1 if the holder is the child.
         """
         joint: Any = self.scene.joints[index]
         self.used.add(index)
@@ -528,12 +528,12 @@ class _Robot:
         return [("joint", attributes)]
 
     def _link(self, rod: str, at: float) -> _Carrier:
-        """The link nearest to a section of a rod, which is there."""
+        """The link nearest to a section of a rod in the tree."""
         nearest = min(self.rods[rod], key=lambda link: abs(link.at - at))
         return self.carriers[rod, nearest.at]
 
     def _site(self, carrier: _Carrier, name: str, pose: NumericPose) -> str:
-        """A site on a carrier, by its pose in the unloaded scene; its name."""
+        """Add a site to a carrier, at a pose in the unloaded scene; returns its name."""
         place = _place(carrier.frame.inverse.then(pose))
         ET.SubElement(carrier.element, "site", {"name": name, "group": "4", **place})
         return name
@@ -541,7 +541,7 @@ class _Robot:
     # Loops
 
     def _close(self, joint: Any, index: int) -> None:
-        """A joint that the tree does not have, as constraints between sites."""
+        """Add a joint that closes a loop, as constraints between sites."""
         name = joint.name or f"joint/{index}"
         if joint.carries is None:
             section = self._link(joint.rod, joint.at)
@@ -554,7 +554,7 @@ class _Robot:
         if joint.kind == "prismatic" or joint.has_coordinate:
             self._close_by_carriage(index, name, section, held, holder, place)
             return
-        # The section is in the unloaded rod where the joint does not want it yet: MuJoCo draws the two together.
+        # In the unloaded scene the joint may be open: MuJoCo pulls both sites together.
         ends = [_turned(np.zeros(3))]
         if joint.kind == "revolute":
             axis = np.array(joint.axis, dtype=float) / np.linalg.norm(joint.axis)
@@ -569,17 +569,17 @@ class _Robot:
     def _close_by_carriage(
         self, index: int, name: str, section: _Carrier, held: NumericPose, holder: _Carrier, place: NumericPose
     ) -> None:
-        """A slide, or a hinge on which something acts, whose carriage is welded to the section or body that it holds.
+        """Close a slide, or a hinge with an effort, by a carriage that is welded to the held section or body.
 
-        MuJoCo has no constraint that lets a body slide along an axis, and no spring or motor on one that lets it turn.
+        MuJoCo has no constraint for sliding along an axis, and no springs or motors on constraints for rotation.
 
         Args:
-            index: place of the joint in the scene's list.
-            name: of the joint.
-            section: the link or the body that the joint holds.
-            held: pose of the joint there, world axes, unloaded.
-            holder: the world or the body that holds it.
-            place: pose of the joint there, world axes, unloaded.
+            index: index of the joint in the scene.
+            name: name of the joint.
+            section: the link or the body held by the joint.
+            held: pose of the joint on the section, world axes, unloaded.
+            holder: the world or the holding body.
+            place: pose of the joint on the holder, world axes, unloaded.
         """
         mass = CARRIAGE * (self.mass + sum(body.mass for body in self.scene.bodies))
         inertia = Inertia(mass, np.zeros(3), mass * (0.1 * self.size) ** 2 * np.eye(3))
@@ -594,7 +594,7 @@ class _Robot:
         self._leave_out(name, f"it closes a loop by a carriage of {mass:.1e} kg, without weight")
 
     def _hold(self, support: Any, index: int) -> None:
-        """A support of a tip, as a constraint between sites."""
+        """Add a support of a tip, as a constraint between sites."""
         kind = {"clamped": "weld", "pinned": "connect"}.get(support.kind)
         name = f"supports[{index}]"
         if kind is None:
@@ -615,23 +615,23 @@ class _Robot:
                 self._leave_out(load.name, "MuJoCo has one field of gravity, and this is the second")
 
     def _control(self, name: str, value: float, kind: str, **attributes: str) -> None:
-        """An actuator, and its value in the keyframe."""
+        """Add an actuator, and its value in the keyframe."""
         ET.SubElement(self.actuators, kind, {"name": name, **attributes})
         self.controls.append(float(value))
 
     def put_section_wrench(self, load: Any) -> None:
-        """A force and a moment on a section."""
+        """Add a force and a moment on a section."""
         carrier = self._link(load.rod, getattr(load, "at", 1.0))
         self._wrench(load, self._site(carrier, load.name, carrier.frame))
 
     def put_body_wrench(self, load: scenes.BodyWrench) -> None:
-        """A force and a moment on a body."""
+        """Add a force and a moment on a body."""
         carrier = self.bodies[load.body]
         at = carrier.frame.then(_turned(np.array(load.position, dtype=float)))
         self._wrench(load, self._site(carrier, load.name, at))
 
     def _wrench(self, load: Any, site: str) -> None:
-        """A control for each component of the force and the moment of a load."""
+        """Add a control for each component of the force and the moment of a load."""
         dead = {"refsite": "world"} if load.frame == "world" else {}
         for offset, key in ((0, "force"), (3, "moment")):
             if key not in load.model_fields_set:
@@ -643,7 +643,7 @@ class _Robot:
                 )
 
     def put_tendon(self, tendon: scenes.Tendon) -> None:
-        """A cable through sites, pulled or led to a length."""
+        """Add a cable through sites, with given tension or length."""
         if tendon.friction:
             self._leave_out(tendon.name, "friction of a cable along its course is not in MuJoCo, and is missing")
         length = self._course(tendon)
@@ -669,7 +669,7 @@ class _Robot:
         self._control(f"{tendon.name}.length", wanted, "position", tendon=tendon.name, **kp, **pulls_only)
 
     def put_chamber(self, chamber: scenes.Chamber) -> None:
-        """A pressure that drives the ends of its channel apart."""
+        """Add a pressure, which pushes the ends of its channel apart."""
         if chamber.wall is not None or chamber.area_growth or chamber.offset_growth:
             self._leave_out(chamber.name, "the chamber does not widen under its pressure in MuJoCo")
         if not TWIST_AND_SHEAR.isdisjoint(self.unloaded.rods[chamber.rod].properties.admitted):
@@ -684,14 +684,14 @@ class _Robot:
         self._control(f"{chamber.name}.pressure", chamber.pressure, "motor", tendon=chamber.name, gear=gear)
 
     def _offsets(self, actuator: Any, X: FloatArray) -> FloatArray:
-        """Places of a course in the sections, shape (k, 2), m."""
+        """Offsets of a routing in the sections, shape (k, 2), m."""
         return known(offset_at(actuator, X)[0]).T
 
     def _places(self, actuator: Any) -> FloatArray:
-        """Abscissae of the sites of a course: its holes; of a continuous one a quarter of each piece from its ends.
+        """Abscissae of the sites of a routing: its holes; for a continuous one a quarter of each piece from its ends.
 
-        The chord past a joint of angle θ is shorter than the arc by a θ²/8, a the length that it spans: with sites at
-        the nodes twice as much.
+        A chord of length a across a joint of angle θ is shorter than the arc by a θ²/8; with sites at the nodes the
+        difference would be twice as large.
         """
         through = holes(actuator)
         if through is not None:
@@ -702,7 +702,7 @@ class _Robot:
         return np.array([start, *quarters.ravel(), end])
 
     def _course(self, actuator: Any) -> float:
-        """The course of a cable through the links of its span; its unloaded length, m."""
+        """Add the routing of a cable through the links of its span; returns its unloaded length, m."""
         X = self._places(actuator)
         spatial = ET.SubElement(self.tendons, "spatial", name=actuator.name, width=_numbers(2e-3 * self.size))
         points = []
@@ -742,7 +742,7 @@ class _Robot:
             ET.SubElement(carrier.element, "geom", {**attributes, **numbered})
 
     def _tell_the_rest(self) -> None:
-        """Say what of rods and inputs is not in the model."""
+        """Add sentences on properties of rods and inputs that are not in the model."""
         scene = self.scene
         lost = {record.name for record in scene.causes if record.kind not in WRITERS}
         for rod in scene.rods:
@@ -776,7 +776,7 @@ def _comment(left_out: Sequence[str]) -> str:
     lines = ["Written by cosserat_casadi. The keyframe 'scene' has the inputs of the scene as controls."]
     if left_out:
         lines += ["What the model does not have as the scene has it:", *left_out]
-    # Two hyphens end a comment.
+    # XML comments may not contain two hyphens.
     return "\n".join(["", *(f"  {line}" for line in lines), ""]).replace("--", "−−")
 
 
@@ -788,4 +788,4 @@ WRITERS: dict[str, Callable[[_Robot, Any], None]] = {
     "tendon": _Robot.put_tendon,
     "chamber": _Robot.put_chamber,
 }
-"""Writer of a load or an actuator by its kind; a kind without an entry is told in a sentence."""
+"""Writers of loads and actuators by kind; kinds without an entry get a sentence in ``left_out``."""

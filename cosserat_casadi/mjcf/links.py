@@ -1,8 +1,8 @@
 """A rod as a chain of rigid links, by the midpoint rule.
 
-Nodes cut the rod into pieces; a link belongs to each node and reaches to the middles of the two pieces that meet there.
-The joint in the middle of a piece has the strain of the piece, and its stiffness: H/h, h its length. A strain that is a
-field becomes its value in the middle of each piece, so that shapes and frequencies are off by h².
+Nodes divide the rod into pieces; the link of a node extends to the middles of the two adjacent pieces. The joint in the
+middle of a piece of length h has the strain of the piece and the stiffness H/h. A strain field is replaced by its value
+in the middle of each piece: errors of shapes and frequencies are O(h²).
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.properties import RodProperties
 
 THIN = 2e-3
-"""Radius over length at which rods without a section are drawn."""
+"""Radius over length of drawn rods without a section."""
 
 MASS_POINTS = 3
-"""Points of the quadrature by which the mass of half a piece is added up."""
+"""Number of quadrature points for the mass of half a piece."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Inertia:
     """Mass of a rigid link.
 
     Attributes:
-        mass: kg.
+        mass: mass, kg.
         centre: centre of mass in the axes of the link, shape (3,), m.
         moments: inertia about the centre in the axes of the link, shape (3, 3), kg m².
     """
@@ -50,11 +50,11 @@ class Inertia:
 
 @dataclass(frozen=True)
 class RodPiece:
-    """The piece of a rod between two nodes; a joint in its middle has its strains.
+    """The piece of a rod between two nodes, with a joint for its strains in the middle.
 
     Attributes:
-        middle: pose of the section in its middle, world axes, unloaded.
-        length: m.
+        middle: pose of the middle section, world axes, unloaded.
+        length: length, m.
         stiffness: stiffness of the joint by strain, shape (6,), N m/rad and N/m.
         damping: damping of the joint by strain, shape (6,), N m s/rad and N s/m.
     """
@@ -72,10 +72,10 @@ class Link:
     Attributes:
         at: abscissa X of its node.
         frame: pose of the section there, world axes, unloaded: the axes of the link.
-        piece: the piece from the node before; None of the first link.
-        ends: where the link begins and ends, in its axes, shape (2, 3), m.
-        half_widths: of its section along x and y, m; both the radius of a round one.
-        inertia: of the rod and of the disks at the node.
+        piece: the piece before the node; None for the first link.
+        ends: start and end of the link, in its axes, shape (2, 3), m.
+        half_widths: half widths of its section along x and y, m; the radius twice for a round section.
+        inertia: inertia of the rod and of the disks at the node.
     """
 
     at: float
@@ -87,7 +87,7 @@ class Link:
 
 
 def nodes_along(ends: Sequence[float], links: int) -> FloatArray:
-    """Abscissae of nodes: the ends of all elements, and between them about as many pieces a rod as asked for."""
+    """Abscissae of nodes, shape (k,): element ends, and between them nodes for about ``links`` pieces."""
     nodes = [0.0]
     for start, end in pairwise(ends):
         count = max(1, round(links * (end - start)))
@@ -136,7 +136,7 @@ def links_of(unloaded: UnloadedScene, rod: scenes.Rod, nodes: FloatArray) -> lis
 
 
 def _half_widths(rod: scenes.Rod, nodes: FloatArray) -> list[tuple[float, float]]:
-    """Half widths of the sections at the nodes, m; a rod without a section is drawn as a thin round one."""
+    """Half widths of the sections at the nodes, m; for a rod without a section those of a thin round one."""
     widths = half_widths_along(rod.section, nodes)
     if widths is None:
         return [(THIN * rod.length, THIN * rod.length)] * len(nodes)
@@ -148,7 +148,7 @@ Lump = tuple[float, NumericPose, FloatArray]
 
 
 def _lumps(unloaded: UnloadedScene, properties: RodProperties, bounds: FloatArray) -> list[Lump]:
-    """Masses of the rod between abscissae, at the points of a quadrature in each interval."""
+    """Lumped masses of the rod at the quadrature points of each interval between abscissae."""
     points, weights = gauss_legendre(MASS_POINTS)
     lumps: list[Lump] = []
     assert properties.linear_density is not None, "refused before"
@@ -166,7 +166,7 @@ def _lumps(unloaded: UnloadedScene, properties: RodProperties, bounds: FloatArra
 
 
 def _together(frame: NumericPose, lumps: Sequence[Lump]) -> Inertia:
-    """The inertia of several masses together, in the axes of a frame."""
+    """The total inertia of several masses, in the axes of a frame."""
     seen = [(mass, _seen(frame, pose), moments) for mass, pose, moments in lumps]
     total = sum(mass for mass, _, _ in seen)
     centre = sum((mass * pose.position for mass, pose, _ in seen), np.zeros(3)) / total
@@ -178,12 +178,12 @@ def _together(frame: NumericPose, lumps: Sequence[Lump]) -> Inertia:
 
 
 def _seen(frame: NumericPose, pose: NumericPose) -> NumericPose:
-    """A pose in world axes as a frame sees it."""
+    """A pose in world axes relative to a frame."""
     return frame.inverse.then(pose)
 
 
 def poses_along(unloaded: UnloadedScene, rod: str, X: FloatArray) -> list[NumericPose]:
-    """Poses of the sections of an unloaded rod at abscissae, world axes."""
+    """Poses of the sections of an unloaded rod at abscissae X, world axes."""
     discrete = unloaded.rods[rod]
     at_rest = shape(discrete, ca.DM.zeros(discrete.size))
     interpolation = discrete.grid.interpolation_matrix(X)

@@ -1,4 +1,4 @@
-"""Coordinates of joints of MuJoCo that bring links and bodies to poses of an equilibrium."""
+"""Joint coordinates of MuJoCo for links and bodies at the poses of an equilibrium."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ MjcfJoint = tuple[str, dict[str, str]]
 def coordinates_at(
     place: NumericPose, joints: Sequence[MjcfJoint], wanted: NumericPose, length: float, near: FloatArray
 ) -> FloatArray:
-    """Coordinates of the joints of a body that bring it to a pose, or as near as the joints let it.
+    """Coordinates of the joints of a body for a pose, or for the nearest pose that the joints allow.
 
     Args:
-        place: pose of the body on its carrier where all coordinates are zero.
-        joints: of the body, in their order: one ``freejoint``, one ball, or hinges and slides.
-        wanted: pose on the carrier; in world axes for a ``freejoint``.
-        length: by which distances are made comparable to angles, m.
-        near: of hinges and slides, coordinates to begin from, which say how often a hinge has turned, shape (n,).
+        place: pose of the body relative to its parent at zero coordinates.
+        joints: joints of the body in their order: one ``freejoint``, one ball, or hinges and slides.
+        wanted: pose relative to the parent; in world axes for a ``freejoint``.
+        length: scale of distances against angles, m.
+        near: initial guess for hinges and slides, shape (n,), which fixes the full turns of hinges.
 
     Returns:
-        as ``qpos`` has them: position and quaternion, a quaternion, or angles and paths, rad and m.
+        coordinates as in ``qpos``: position and quaternion, a quaternion, or angles and displacements, rad and m.
     """
     tag, attributes = joints[0]
     if tag == "freejoint":
@@ -48,7 +48,7 @@ def coordinates_at(
 
 
 def _moved(joint: dict[str, str], coordinate: float) -> NumericPose:
-    """Motion of a body by one hinge or slide, in the axes of the body before it."""
+    """Motion of a body by one hinge or slide, in the axes before this motion."""
     axis = np.array(joint["axis"].split(), dtype=float)
     axis /= np.linalg.norm(axis)
     if joint["type"] == "slide":

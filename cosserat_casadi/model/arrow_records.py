@@ -21,7 +21,7 @@ from cosserat_casadi.model.load_assembly import unloaded_poses
 from cosserat_casadi.model.registry import EFFECTS
 
 DRAWN_SECTIONS = np.linspace(0.05, 0.95, 8)
-"""Where a load per length is drawn, as shares of its span."""
+"""Abscissae at which a load per length is drawn, as shares of its span."""
 
 DrawnPoses: TypeAlias = tuple[Matrix | FloatArray, Sequence[Matrix] | FloatArray]
 """World positions, 3×k in m, and rotation matrices world_R_section, k of 3×3: numbers or expressions."""
@@ -29,13 +29,13 @@ DrawnPoses: TypeAlias = tuple[Matrix | FloatArray, Sequence[Matrix] | FloatArray
 
 @dataclass(frozen=True)
 class DrawnLoad:
-    """A load on the sections of one rod that it is drawn at, or on one body.
+    """A load at the drawn sections of one rod, or on one body.
 
     Attributes:
         member: the kind of load.
-        load: the load as the scene has it.
+        load: record of the load in the scene.
         label: its name in the legend; empty where the legend names it already.
-        on_body: whether it acts on a body, as on one section.
+        on_body: whether it acts on a body; its arrays then have one column.
         position: positions of the k sections, world axes, 3×k, m.
         force: force on these sections, world axes, 3×k, N or N/m.
         moment: moment on these sections, world axes, 3×k, N m or N m/m.
@@ -51,11 +51,11 @@ class DrawnLoad:
 
     @property
     def at_point(self) -> bool:
-        """Whether the load is a force and a moment; else it is both per length."""
+        """Whether the load is a force, N, and a moment, N m; otherwise both are per length."""
         return self.on_body or self.member.abscissa(self.load) is not None
 
     def arrows(self) -> list[Arrow]:
-        """Arrows of the load, where the numbers are known."""
+        """Arrows of the load; its force, moment and positions must be numbers."""
         numbers = [ca.DM(part).full() for part in (self.position, self.force, self.moment)]
         position, force, moment = numbers
         if self.on_body:
@@ -70,8 +70,8 @@ class LoadArrows:
     Attributes:
         discrete: the scene.
         inputs: the stacked inputs.
-        rod_poses: poses of sections, from a rod's name and abscissae.
-        body_pose: pose of a body, from its name, as the pose of one section.
+        rod_poses: function from the name of a rod and abscissae to the poses of these sections.
+        body_pose: function from the name of a body to its pose, in the form of the pose of one section.
     """
 
     discrete: DiscreteScene
@@ -84,7 +84,7 @@ class LoadArrows:
         return [arrow for drawn in self.drawn() for arrow in drawn.arrows()]
 
     def drawn(self) -> Iterator[DrawnLoad]:
-        """All loads on all that they act on, in the order of the scene."""
+        """Every load on every rod and body that it acts on, in the order of the scene."""
         for load in self.discrete.loads:
             values = input_values(self.discrete.layout, load, self.inputs)
             yield from self._on_rods(load, values)
@@ -127,10 +127,10 @@ class LoadArrows:
             position, rotation = self.body_pose(body.name)
             start = position + rotation[0] @ np.array(point.position)[:, None]
             kernel = traced(member, load, values)
-            # Profiles are those of a load per length: at a point they are one.
+            # Profiles belong to loads per length: for a load at a point they are one.
             profiles = np.ones((sum(kernel.columns), 1))
             force, moment = _wrench(kernel, stored(values), (start, rotation), profiles)
-            # A load that acts on bodies which it does not name, as a weight does, is one for each.
+            # A load that acts on bodies without naming one, such as weight, has a label for each body.
             label = load.name if getattr(load, "body", None) is not None else f"{load.name} of {body.name}"
             yield DrawnLoad(member, load, label, True, start, point.factor * force, point.factor * moment)
 

@@ -1,13 +1,13 @@
 """Constraints, floating frames and cables in the equations of a scene, and the Jacobian of the whole.
 
 The balance of a frame is the derivative of the Lagrangian with respect to its pose: −F ℓ for the position, and for the
-quaternion −Tᵀ M with δθ = T δQ, both in units of the frame's EI/ℓ. A quaternion has a length that no mechanics sees:
-the derivative (Q·Q − 1) Q of ¼ (Q·Q − 1)² is added, orthogonal to the rest, and makes it one. So no rotation is
+quaternion −Tᵀ M with δθ = T δQ, both in units of the frame's EI/ℓ. No mechanics depends on the norm of a quaternion:
+the derivative (Q·Q − 1) Q of ¼ (Q·Q − 1)² is added, orthogonal to the rest, and makes the norm one. So no rotation is
 singular. The Jacobian is symmetric but for units wherever the loads have a potential and the constraints are closed.
 
-The Jacobian follows by the chain rule. Every constraint gives derivatives with three motions [δθ; δr]: of its section,
-of the base of its rod, of the frame on its other side. Sections move with the strains (rod/tangent.py), frames with
-their unknowns. With u = (strains q, multipliers m, deviations d of frames, tensions τ) the blocks are
+The Jacobian follows by the chain rule. Every constraint gives derivatives with respect to three motions [δθ; δr]: of
+its section, of the base of its rod, of the frame on its other side. Sections move with the strains (rod/tangent.py),
+frames with their unknowns. With u = (strains q, multipliers m, deviations d of frames, tensions τ) the blocks are
 
                q                    m                  d                        τ
     rod        tangent              −δᵀ W              turn of dead loads,      ∂L/∂q / ℓ
@@ -61,7 +61,7 @@ def _turn_rows() -> ca.Function:
     """
     quaternion = ca.SX.sym("quaternion", 4)
     moment = ca.SX.sym("moment", 3)
-    # Along Q what makes its norm one, orthogonal to it what the moment does: both vanish, or neither does.
+    # The norm's term is along Q, the moment's term orthogonal to it: the sum vanishes only where both do.
     norm_row = (ca.sumsqr(quaternion) - 1) * quaternion
     rows = norm_row - turn_matrix(quaternion).T @ moment
     results = ca.cse([rows, ca.jacobian(rows, quaternion)])
@@ -84,11 +84,11 @@ class Assembly:
 
     @property
     def load_factor(self) -> LoadFactor:
-        """λ that the equations are written at."""
+        """Load factor λ at which the equations are written."""
         return self.system.arguments.load_factor
 
     def _closing(self, compliance: Compliance) -> LoadFactor:
-        """λ by which rows of a compliance close; None where they are closed all along."""
+        """Load factor λ of rows with this compliance; None where they are closed for every load factor."""
         if compliance is ASSEMBLED and self.discrete.closed_unloaded:
             return None
         return self.load_factor
@@ -153,7 +153,7 @@ class Assembly:
 
     @cached_property
     def _stop_pairs(self) -> list[tuple[JointStop, tuple[Matrix, Matrix, Matrix]]]:
-        """Stops with their rows of the scene itself, and the derivatives of these with the way and the push."""
+        """Stops with their rows at λ = 1, and derivatives of these by the way to the stop and by the push."""
         if not self.discrete.stops:
             return []
         kernel = pair_kernel(slack=True, softness=1.0)
@@ -219,7 +219,7 @@ class Assembly:
         return ca.vertcat(tangent.rotation_of(placed.node), tangent.position(placed.node))
 
     def _of_floating(self, placed: PlacedConstraint, variations: PoseVariations) -> list[tuple[FrameName, Matrix]]:
-        """Derivatives with the motions of those frames of a constraint that float: its rod's base, its other side."""
+        """Derivatives with respect to the motions of a constraint's floating frames: its rod's base, its other side."""
         if placed.carried is None:
             base = self.discrete.unloaded.floating_base(placed.rod)
         else:
@@ -232,13 +232,13 @@ class Assembly:
         return derivatives
 
     def _of_coordinate(self, placed: PlacedConstraint, variations: PoseVariations) -> list[tuple[slice, Matrix]]:
-        """Derivative with the coordinate of a joint, where that is an unknown."""
+        """Derivative with respect to the coordinate of a joint, if the coordinate is an unknown."""
         if variations.coordinate is None or placed not in self.discrete.free_coordinates:
             return []
         return [(self.discrete.coordinate(placed), placed.coordinate_scale * variations.coordinate)]
 
     def _add_coordinate(self, blocks: BlockMatrix, placed: PlacedConstraint) -> None:
-        """Row of the coordinate of a joint: by its multiplier, and by the stiffness of its spring."""
+        """Add the row of a joint's coordinate: its derivatives by the multiplier and, with a spring, the coordinate."""
         rows = self.discrete.coordinate(placed)
         along = ca.DM(ca.Sparsity.triplet(1, placed.size, [0], [placed.along_coordinate]), 1.0)
         blocks.add(rows, self.discrete.multipliers(placed), column_at(along, self.load_factor))
@@ -267,11 +267,11 @@ class Assembly:
     # Columns of the rods
 
     def _add_constraint_wrench(self, blocks: BlockMatrix, placed: PlacedConstraint) -> None:
-        """Blocks of the multipliers in their rod's residual, −δᵀ W / (EI/ℓ), and of W that turns with its frame."""
+        """Blocks of the multipliers in their rod's residual, −δᵀ W / (EI/ℓ), and of the turn of W with its frame."""
         constraint = placed.constraint
         poses = self.system.poses(placed)
         strains = self.discrete.unknowns.strain(placed.rod)
-        # The virtual work of a wrench on the section is δᵀ times it; the residual of a rod is in units of its EI/ℓ.
+        # δᵀ times a wrench on the section is its virtual work; the residual of a rod is in units of its EI/ℓ.
         work = self._section_motion(placed).T / -constraint.unit
         multipliers = self.discrete.multipliers(placed)
         blocks.add(strains, multipliers, work @ constraint.wrench_basis(poses))
@@ -285,7 +285,7 @@ class Assembly:
             blocks.add(strains, column, work @ derivative)
 
     def _add_turned_loads(self, blocks: BlockMatrix, rod: str) -> None:
-        """Blocks of a moving base in the residual of its rod: dead loads turn back, pose-dependent ones change."""
+        """Blocks of a moving base in its rod's residual: dead loads turn back, pose-dependent loads change."""
         name = FrameName("rod", rod)
         frame_pose = self.system.frame_poses[name]
         base_R_world = frame_pose.pose.rotation.T
@@ -301,7 +301,7 @@ class Assembly:
             blocks.add(strains, deviation, by_shift @ base_R_world @ motion[3:, :])
 
     def _add_pair(self, blocks: BlockMatrix, terms: PairTerms) -> None:
-        """Blocks of two rods that push each other in the rows of their strains."""
+        """Blocks, in the rows of the strains of two rods, of the push between them."""
         for (rod, other), stiffness in terms.stiffness.items():
             rows = self.discrete.unknowns.strain(rod)
             work = stiffness[: rows.stop - rows.start, :] / self.discrete.rods[rod].energy_unit
@@ -309,7 +309,7 @@ class Assembly:
                 blocks.add(rows, columns, block)
 
     def _by_side(self, rod: str, derivative: Matrix) -> Iterator[tuple[slice, Matrix]]:
-        """A derivative with the coordinates of a side of a pair, parted into strains and the base of the rod."""
+        """Split a derivative with respect to one side of a pair into columns of the rod's strains and of its base."""
         strains = self.discrete.unknowns.strain(rod)
         count = strains.stop - strains.start
         yield strains, derivative[:, :count]
@@ -321,7 +321,7 @@ class Assembly:
 
     @cached_property
     def _borne_loads(self) -> list[BorneLoad]:
-        """Loads on rods whose opposite bodies bear, at the load factor."""
+        """Loads on rods with reactions on bodies, at the load factor."""
         return list(borne_loads(self.system))
 
     @cached_property
@@ -357,12 +357,12 @@ class Assembly:
 
     @cached_property
     def _reactions(self) -> dict[str, Reaction]:
-        """Variations of the base wrenches of rods whose bases float."""
+        """Variations of the base wrenches of rods with floating bases."""
         names = [rod.name for rod in self.discrete.unloaded.floating_rods]
         return {name: Reaction(self.system.tangents[name], self.system.dead_wrenches(name)) for name in names}
 
     def _add_balance(self, blocks: BlockMatrix, name: FrameName) -> None:
-        """Rows of a frame's balance, from the variations of the wrench on it."""
+        """Add the rows of a frame's balance, from the variations of the wrench on the frame."""
         frame = self.discrete.frames[name]
         quaternion = self.system.frame_poses[name].quaternion
         rows = self.discrete.deviation(name)
@@ -383,14 +383,14 @@ class Assembly:
     def _wrench_variations(self, name: FrameName) -> list[tuple[slice, Matrix]]:
         """Variation of the wrench on a frame with each block of unknowns that changes it, 6×k, world axes."""
         variations: list[tuple[slice, Matrix]] = []
-        # Derivatives with the motions of frames are summed first: B is applied once to each frame.
+        # Derivatives with respect to the motions of frames are summed first, so that B is applied once to each frame.
         by_motion: dict[FrameName, Matrix] = defaultdict(lambda: ca.DM(6, 6))
         for placed in self.discrete.constraints:
             if placed.frame == name:
                 of_reaction = placed.constraint.reaction_variation
                 added, by_poses = self._wrench_on_frame(placed, of_reaction, by_motion)
                 variations += added
-                # It acts at the joint of the frame, but for a slide: there it acts at the section, wherever that is.
+                # The wrench acts at the joint of the frame, but for a slide at the section, wherever the section is.
                 if placed.constraint.held.slides and placed.carried is None:
                     by_strain = by_poses.section @ self._section_motion(placed)
                     variations.append((self.discrete.unknowns.strain(placed.rod), by_strain))
@@ -421,7 +421,7 @@ class Assembly:
         varied: Callable[[ConstraintPoses, Matrix], tuple[Matrix, PoseVariations]],
         by_motion: dict[FrameName, Matrix],
     ) -> tuple[list[tuple[slice, Matrix]], PoseVariations]:
-        """Variation of a wrench of a constraint with its multipliers and coordinate, and with poses."""
+        """Variation of a constraint's wrench with its multipliers and coordinate; with poses, into by_motion."""
         by_multipliers, by_poses = varied(self.system.poses(placed), self.system.multipliers(placed))
         for moved, derivative in self._of_floating(placed, by_poses):
             by_motion[moved] = by_motion[moved] + derivative
@@ -431,7 +431,7 @@ class Assembly:
     def _rod_reaction_variations(
         self, name: FrameName, by_motion: dict[FrameName, Matrix]
     ) -> list[tuple[slice, Matrix]]:
-        """Variation of the wrench of a rod on its floating base with strains and multipliers; frames into by_motion."""
+        """Variation of a rod's wrench on its floating base with strains and multipliers; frames into by_motion."""
         rod = name.name
         reaction = self._reactions[rod]
         rotation = self.system.frame_poses[name].pose.rotation
@@ -455,7 +455,7 @@ class Assembly:
     def _passed_on(
         self, placed: PlacedConstraint, to_world: Matrix, by_motion: dict[FrameName, Matrix]
     ) -> list[tuple[slice, Matrix]]:
-        """Wrench that the multipliers of a constraint on a carried rod pass on to the rod's base, 6×k, world axes."""
+        """Wrench that k multipliers of a constraint on a carried rod transmit to the rod's base, 6×k, world axes."""
         constraint = placed.constraint
         poses = self.system.poses(placed)
         # The force of the section has its arm about the base: moment + r × force.
@@ -510,7 +510,7 @@ class Assembly:
     # From the unloaded scene to the scene
 
     def _compliances(self) -> Iterator[tuple[slice, Compliance]]:
-        """The blocks of unknowns that a spring acts on, with its compliance (model/homotopy.py)."""
+        """Blocks of unknowns with a spring on the load path, and the compliance of each spring (model/homotopy.py)."""
         for placed in self.discrete.constraints:
             yield self.discrete.multipliers(placed), placed.compliance
         for name in self.discrete.frames:
@@ -525,10 +525,10 @@ class Assembly:
 
 @dataclass
 class BlockMatrix:
-    """A square matrix made of blocks; blocks in the same rows and columns are added.
+    """A square matrix of blocks; blocks in the same rows and columns are summed.
 
     Attributes:
-        ends: last row of each block row, plus one; block columns end alike.
+        ends: last row of each block row, plus one; block columns end at the same indices.
         entries: blocks by the first of their rows and the first of their columns.
     """
 
@@ -545,7 +545,7 @@ class BlockMatrix:
     def matrix(self) -> Matrix:
         """The whole, sparse."""
         ranges = list(pairwise([0, *self.ends]))
-        # Unknowns that do not meet have a block without a stored entry.
+        # Unknowns that are not coupled have a block without stored entries.
         blocks = [
             [self.entries.get((top, left), ca.DM(bottom - top, right - left)) for left, right in ranges]
             for top, bottom in ranges

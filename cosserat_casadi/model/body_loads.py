@@ -21,7 +21,7 @@ from cosserat_casadi.rod.rod_motion import FrameMotion
 
 @dataclass(frozen=True)
 class BodyLoad:
-    """A load on a rigid body in its pose, world axes.
+    """A load on a rigid body at the body's pose, world axes.
 
     Attributes:
         position: the loaded point in the axes of the body, m.
@@ -32,7 +32,7 @@ class BodyLoad:
         aligns: whether it can hold the orientation of the body: a force that keeps its direction, or a load that
             depends on the pose.
         stiffness: 6×6 derivative of [force; moment] with the [δr; δθ] of the point; None for a dead load or a follower.
-        energy: 1×1, J; None for a load that is not given by one.
+        energy: 1×1, J; None for a load that is not written by an energy.
     """
 
     position: tuple[Scalar, Scalar, Scalar]
@@ -60,7 +60,7 @@ class BodyLoad:
     @property
     def variation(self) -> Matrix:
         """Derivative of the wrench with the motion [δθ; δr] of the body, world axes, 6×6."""
-        # A shift δr moves the origin, which the moment is about, and the point alike.
+        # A shift δr moves the loaded point and the origin, about which the moment is taken, alike.
         if self.follower:
             # All of the wrench turns with the body: δθ × M = −M^ δθ.
             moment = ca.cross(self.arm, self.force) + self.moment
@@ -106,7 +106,7 @@ class BodyLoads:
         return [own for own in map(self.of, self.discrete.loads) if own is not None]
 
     def of(self, load: scenes.LoadRecord) -> BodyLoad | None:
-        """One load on the body; None where it does not act there, or is always zero."""
+        """One load on the body; None if it does not act on the body, or is always zero."""
         point = EFFECTS[load.kind].on_body(load, self.body)
         if point is None:
             return None
@@ -125,11 +125,11 @@ class BodyLoads:
         return BodyLoad(point.position, self._arm(point), force, moment, kernel.follower, aligns)
 
     def drag(self, load: scenes.LoadRecord, motion: FrameMotion) -> Matrix | None:
-        """The drag of a load, [force; moment about the origin], 6×1; None of a load that does not feel motion.
+        """The drag of a load, [force; moment about the origin], 6×1; None for a load that does not depend on motion.
 
         Args:
-            load: on the body.
-            motion: of the body, world axes.
+            load: a load on the body.
+            motion: motion of the body, world axes.
         """
         point = EFFECTS[load.kind].on_body(load, self.body)
         kernel = traced(EFFECTS[load.kind], load, input_values(self.discrete.layout, load, self.inputs))
@@ -146,14 +146,14 @@ class BodyLoads:
     def _arguments(self, kernel: TracedLoad, arm: Matrix) -> list[Matrix]:
         """Arguments of a kernel at a point of the body."""
         parameters = stored(input_values(self.discrete.layout, kernel.load, self.inputs))
-        # Profiles are those of a load per length: at a point they are one.
+        # Profiles belong to loads per length: for a load at a point they are one.
         profiles = ca.DM.ones(sum(kernel.columns), 1)
-        # A body is seen from the world: its base is the origin.
+        # The kernel of a load on a body has the world as its base.
         base = [ca.DM.zeros(3, 1), ca.DM.eye(3)]
         return [self.position + arm, self.rotation, *base, parameters, profiles]
 
     def _pose_dependent(self, kernel: TracedLoad, point: BodyPoint) -> BodyLoad:
-        """A load that depends on the pose of the point: its kernel, evaluated there."""
+        """A load that depends on the pose of its point: its kernel at this pose."""
         section_kernel = kernel.kernel
         arm = self._arm(point)
         arguments = self._arguments(kernel, arm)

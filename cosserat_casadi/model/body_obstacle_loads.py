@@ -1,11 +1,11 @@
-"""Loads on rods that a body sees, and bears the opposite of: obstacles that are fixed to bodies.
+"""Loads on rods whose reaction a body bears: the push of obstacles that are fixed to bodies.
 
-Such a load is written in the axes of its body: the forces on a rod hang on where the rod is relative to the body, and
-on nothing else. Two things follow. The body bears what a clamp would that held the rod against this load alone, and so
-the wrench on it is the base wrench of that load, about another point. And a motion of the body does to the rod what the
-opposite motion of its base does, all of which rod/reaction.py has. No derivative is new here.
+Such a load is written in the axes of its body: the forces on a rod depend on the pose of the rod relative to the body,
+and on nothing else. Two things follow. The body bears the wrench of a clamp that holds the rod against this load alone:
+the wrench on the body is the base wrench of that load, about another point. And a motion of the body changes the rod's
+residual as the opposite motion of its base does, whose derivatives rod/reaction.py has. No derivative is new here.
 
-With o the origin of the body as the base of the rod sees it, base axes, a motion [δθ; δr] of the body is the motion
+With o the origin of the body relative to the base of the rod, base axes, a motion [δθ; δr] of the body is the motion
 δφ = −δθ, δp = −δr − o × δθ of the base. Docs/theory.md, section 8.
 """
 
@@ -27,7 +27,7 @@ from cosserat_casadi.rod.statics import Statics
 
 
 def borne_loads(system: System) -> Iterator[BorneLoad]:
-    """All loads on the rods of a scene whose opposite a body bears, at its load factor."""
+    """All loads on rods whose reaction a body bears, at the load factor of the system."""
     for rod, model in system.rods.items():
         for load in model.statics.pose_loads:
             if load.load.borne_by is not None:
@@ -36,7 +36,7 @@ def borne_loads(system: System) -> Iterator[BorneLoad]:
 
 @dataclass(frozen=True)
 class BorneLoad:
-    """One load on a rod whose opposite a body bears. Wrenches are [moment; force], motions [δθ; δr]."""
+    """One load on a rod whose reaction a body bears. Wrenches are [moment; force], motions [δθ; δr]."""
 
     system: System
     rod: str
@@ -50,7 +50,7 @@ class BorneLoad:
 
     @property
     def base_frame(self) -> FrameName | None:
-        """The frame that the base of the rod is; None where it rests in the world."""
+        """The floating frame of the rod's base; None if the base rests in the world."""
         return self.system.discrete.unloaded.floating_base(self.rod)
 
     @cached_property
@@ -74,8 +74,8 @@ class BorneLoad:
     def with_motions(self, frame: FrameName) -> Iterator[tuple[FrameName, Matrix]]:
         """Derivatives of the load's wrench on a frame with the motions of frames, 6×6 each.
 
-        Of the wrench on the body all derivatives; of the wrench on the base of the rod the derivative with the body,
-        for the rod itself passes on the rest.
+        For the frame of the body these are all derivatives. For the base of the rod it is the derivative with respect
+        to the motion of the body alone: the rod's reaction has the others.
         """
         if frame == self.body:
             yield self.body, self._wrench_with_body
@@ -98,8 +98,8 @@ class BorneLoad:
     def _wrench_with_body(self) -> Matrix:
         """Derivative of the wrench on the body with its own motion, 6×6.
 
-        Where body and base move as one the wrench turns, M × and F ×, and nothing else: what the base alone does is
-        taken from that.
+        If body and base move as one rigid body the wrench turns with them, by M × and F ×, and does not change
+        otherwise: the derivative with respect to the base alone is subtracted from that.
         """
         by_turn, by_shift = self._about_body_with_base
         moment, force = ca.vertsplit(self._about_body @ self._clamp, 3)
@@ -113,27 +113,27 @@ class BorneLoad:
         moment, force = ca.vertsplit(self._clamp, 3)
         _, force_with_turn, moment_with_turn = self._reaction.with_turn
         _, force_with_shift, moment_with_shift = self._with_shift
-        # What the base sees turn back turns with it in the world.
+        # In the world a wrench given in the axes of the base also turns with the base, by δθ × M.
         turned = ca.vertcat(moment_with_turn - hat(moment), force_with_turn - hat(force))
         shifted = ca.vertcat(moment_with_shift, force_with_shift)
-        # A shift of the base is one of the point that the moment of the clamp is about.
+        # A shift of the base shifts the point about which the moment of the clamp is taken.
         lever = ca.vertcat(-hat(force), ca.DM(3, 3))
         return self._about_body @ turned, self._about_body @ shifted + lever
 
     def _of_body(self, by_turn: Matrix, by_shift: Matrix) -> Matrix:
-        """Derivatives with a motion of the body, k×6, from derivatives with a turn and a shift of the base, k×3."""
+        """Derivatives by a motion of the body, k×6, from derivatives by a turn and by a shift of the base, k×3 each."""
         in_base_axes = ca.horzcat(-by_turn - by_shift @ hat(self._origin), -by_shift)
         return in_base_axes @ self._to_world.T
 
     @cached_property
     def _clamp(self) -> Matrix:
-        """Wrench of a clamp that would hold the rod against this load alone, about the base, base axes, 6×1."""
+        """Wrench, about the base, of a clamp that holds the rod against this load alone, base axes, 6×1."""
         statics = Statics(self.load.shape, (), (self.load,))
         return ca.vertcat(statics.base_moment, statics.base_force)
 
     @cached_property
     def _reaction(self) -> Reaction:
-        """Variations of the rod's residual and of that clamp."""
+        """Variations of the rod's residual and of the clamp's wrench under this load alone."""
         return Reaction(self.system.tangents[self.rod].under(self.load), ())
 
     @property
@@ -144,7 +144,7 @@ class BorneLoad:
 
     @cached_property
     def _origin(self) -> Matrix:
-        """Origin of the body as the base of the rod sees it, o, 3×1, base axes, m."""
+        """Origin o of the body relative to the base of the rod, 3×1, base axes, m."""
         base = self.system.base(self.rod)
         return base.rotation.T @ (self.system.frame(self.body).position - base.position)
 

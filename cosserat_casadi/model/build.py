@@ -39,7 +39,7 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
     """A scene as functions of its unknowns ``x`` and its stacked ``inputs``.
 
     ``x`` holds the strain coordinates of every rod, in the order of the scene, then the multipliers of supports and
-    joints, then where bodies and the bases of carried rods have moved to; all are without unit.
+    joints, then the displacements of bodies and of the bases of carried rods; all are dimensionless.
     Every function is exact for the discrete model and can be differentiated again.
 
     Attributes:
@@ -49,12 +49,12 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
     discrete: DiscreteScene
 
     def __reduce__(self) -> tuple[type[Self], tuple[DiscreteScene]]:
-        """How pickle and copy make the model anew: its functions are written again when they are asked for."""
+        """Pickle and copy rebuild the model from its scene; each function is written again when it is first used."""
         return type(self), (self.discrete,)
 
     @property
     def scene(self) -> scenes.Scene:
-        """The scene of this model; its parameters have the values of its file, or the values that are bound."""
+        """The scene of this model; its parameters have the values of its file, or the values set by :meth:`at`."""
         return self.discrete.nominal.scene if self.parameters.size else self.discrete.scene
 
     @property
@@ -63,9 +63,9 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
         return self.discrete.parameters
 
     def unjudged(self, values: Mapping[str, npt.ArrayLike] | None) -> Model:
-        """The model with constants for its parameters, whose loads, obstacles and pairs may be where none can be.
+        """The model with constants for its parameters; its loads, obstacles and pairs of rods are not checked.
 
-        On the way between parameters rods may be inside each other where nothing acts.
+        Between two sets of parameters the unloaded rods may penetrate each other.
         """
         nominal = self.discrete.nominal
         return Model(with_numbers(nominal, self.parameters.set_in(nominal.scene, values)))
@@ -95,7 +95,7 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
 
     @cached_property
     def in_motion(self) -> Model:
-        """The model with flows behind its unknowns where stress relaxes, and with margins of contact; else itself."""
+        """The model with flows of relaxing stress behind its unknowns and margins of contact, else itself."""
         relaxes = any(rod.properties.branches for rod in self.discrete.rods.values())
         if self.discrete.moving or not (relaxes or self.discrete.may_lie_apart):
             return self
@@ -103,12 +103,12 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
 
     @cached_property
     def with_memory(self) -> Model:
-        """The model, of which friction on a path remembers the last point: as inputs ``history``."""
+        """The model with inputs ``history``, by which friction remembers the last point of a path."""
         return self if self.inputs.memory is not None else Model(self.discrete.with_memory)
 
     @property
     def rubs_on_paths(self) -> bool:
-        """Whether something rubs along a path: rods on obstacles and on each other do, bodies and disks do not."""
+        """Whether friction acts along a path: between rods and obstacles or rods and rods, not on bodies or disks."""
         return self.scene.rubs and self.with_memory.inputs.memory is not None
 
     def with_flows(self, x: FloatArray) -> FloatArray:
@@ -137,7 +137,7 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
 
     @property
     def parametric_scene(self) -> scenes.Scene:
-        """The scene, in which parameters are entries of their symbol."""
+        """The scene with entries of the symbol p for its parameters."""
         return self.discrete.scene
 
     @property
@@ -147,13 +147,13 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
 
     @property
     def typical_sizes(self) -> tuple[float, float]:
-        """Length, m, and energy, N m, of the longest and the stiffest rod, bent by about a radian."""
+        """Length of the longest rod, m, and energy of the stiffest rod bent by about a radian, N m."""
         rods = self.discrete.nominal.rods.values()
         return max(rod.properties.length for rod in rods), max(rod.energy_unit for rod in rods)
 
     @property
     def hessian_is_cheap(self) -> bool:
-        """Whether an optimiser is faster with exact second derivatives: it is."""
+        """True: an optimiser is faster with exact second derivatives of this model."""
         return True
 
     @property
@@ -178,7 +178,7 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
 
     @property
     def resolution_words(self) -> list[str]:
-        """Modes, intervals and elements of every rod; rods that are alike in all of these share a sentence."""
+        """Modes, intervals and elements of every rod in words; rods with equal numbers share a sentence."""
         names: dict[str, list[str]] = {}
         for name, d in self.discretisation.items():
             elements = f" in {d.elements} elements" if d.elements > 1 else ""
@@ -187,7 +187,7 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
         return [f"{', '.join(alike)}: {words}" for words, alike in names.items()]
 
     def element_ends(self, rod: str) -> tuple[float, ...]:
-        """Abscissae X at which the elements of a rod end, base to tip, with its parameters as they are here."""
+        """Abscissae X at which the elements of a rod end, base to tip, for the parameters of this model."""
         return self.at().discrete.rods[rod].grid.known_places
 
     def operations(self, function: ca.Function) -> int:
@@ -216,15 +216,15 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
         return max(self.length(rod, inputs) for rod in self.discrete.unloaded.rods_of(body))
 
     def length_ratio(self, rod: str, inputs: FloatArray) -> float:
-        """Length of a rod for these inputs, relative to the scene's."""
+        """Length of a rod for these inputs, relative to its length in the scene."""
         discrete = self.at().discrete
         ratio = ratio_of(discrete, rod, Arguments(ca.DM(0, 1), ca.DM(inputs)))
         return 1.0 if ratio is None else float(ca.evalf(ca.MX(ratio)))
 
     def has_potential(self, inputs: FloatArray) -> bool:
-        """Whether loads and actuators derive from a potential at these inputs, so that stability has a meaning.
+        """Whether all loads and actuators derive from a potential at these inputs, so that stability is defined.
 
-        It depends on which inputs are zero, and on nothing else: the answer to each such pattern is kept.
+        The answer depends on which inputs are zero, and on nothing else: it is kept for each pattern of zeros.
         """
         bound = self.at()
         known: dict[bytes, bool] = bound.__dict__.setdefault("_potential", {})
@@ -244,16 +244,16 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
 
 
 def check_pairs(model: Model, parameters: Mapping[str, npt.ArrayLike] | None = None) -> None:
-    """Refuse rods that are inside each other where nothing acts: to which side they belong is not known.
+    """Refuse rods that penetrate each other unloaded: the side on which they belong is unknown.
 
-    Where constraints have to draw rods together their unloaded places say nothing.
+    Rods that constraints have to draw together are not checked: their unloaded poses are not where they will be.
 
     Args:
         model: the model.
         parameters: by name; the scene's values by default.
 
     Raises:
-        SceneError: two rods are deeper inside each other than the width of their contact.
+        SceneError: two rods penetrate each other by more than the width of their contact.
     """
     if model.discrete.constraints and not model.discrete.closed_unloaded:
         return
@@ -266,10 +266,10 @@ def check_pairs(model: Model, parameters: Mapping[str, npt.ArrayLike] | None = N
 
 
 def check_axes(nominal: DiscreteScene, parameters: ParameterLayout) -> None:
-    """Refuse axes as parameters that decide which directions other joints hold.
+    """Refuse parameters that turn an axis on which the held directions of other joints depend.
 
     Raises:
-        SceneError: with all such axes.
+        SceneError: there are such axes; it names all of them.
     """
     problems = []
     decisive = decisive_axes(nominal.unloaded)
@@ -290,9 +290,9 @@ def build(
 
     Args:
         scene: a validated scene.
-        discretisation: one for every rod; by default what the scene fixes, else a moderate one. Use
-            :func:`cosserat_casadi.solve` to have it chosen for a tolerance.
-        moving: whether it is for a motion, in which bodies may turn freely and stress may relax.
+        discretisation: one for every rod; by default the scene's, or else a moderate one. :func:`cosserat_casadi.solve`
+            chooses it for a tolerance.
+        moving: whether the model is for a motion, in which bodies may turn freely and stress may relax.
 
     Raises:
         SceneError: joints over-constrain; or, at rest, leave a body free to turn; a load or an obstacle cannot be

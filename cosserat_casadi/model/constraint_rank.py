@@ -1,16 +1,16 @@
-"""Joints that hold too much or too little, refused before anything is solved.
+"""Refusal of joints that hold too many directions or too few, before anything is solved.
 
 Over-constraining joints show in the rank of the linearised constraint residuals: docs/theory.md, section 8.
 
 Rods hold a body as far as their strains allow. Where the constraint residuals depend on each other for every
 shape of the rods, not only for some, the wrenches of the joints cannot be told apart: two rods that only stretch,
-clamped in one body, or planar rods of different planes. A few modes and a random shape show it.
+clamped in one body, or planar rods of different planes. A few modes and a random shape show this.
 
 Bodies turn freely where their joints are spherical and lie on one line, and nothing has a lever about it. Turning such
 a body about the line strains no rod and moves no force, in every pose: its orientation is not determined and the
-equations are singular. A force that keeps its direction, or weight, holds it where it acts off the line. Forces that
-turn with the body and moments cannot: they have no potential. What hangs from one joint is let through: its weight
-holds it but for a turn about the vertical, and the solution says that it is neutral.
+equations are singular. A force that keeps its direction, or weight, holds the body if it acts off the line. Forces that
+turn with the body and moments cannot: they have no potential. A body that hangs from one joint is let through: its
+weight holds it except for a turn about the vertical, and the solution is called neutral.
 """
 
 from __future__ import annotations
@@ -39,24 +39,24 @@ from cosserat_casadi.model.unknowns import BlockKind
 
 MODES = 4
 NODES = 10
-"""A discretisation that can bend every way a rod can."""
+"""Discretisation with which a rod can take every kind of shape that its strains admit."""
 
 SEED = 20250711
 """Seed of the random shape."""
 
 RANK = 1e-8
-"""Share of the largest singular value below which one counts as zero."""
+"""Share of the largest singular value below which a singular value counts as zero."""
 
 
 def check_constraints(scene: scenes.Scene, *, moving: bool = False) -> None:
-    """Refuse a scene whose constraints hold too much, or, unless it moves, leave a body free to turn.
+    """Refuse a scene whose constraints repeat each other, or, at rest, leave a body free to turn.
 
     Args:
         scene: the scene.
         moving: whether bodies may turn freely.
 
     Raises:
-        SceneError: with the first constraint that repeats others, or every body that turns freely.
+        SceneError: a constraint repeats others (the first is named), or bodies turn freely (all are named).
     """
     carries = any(rod.base.rod is not None for rod in scene.rods)
     if not scene.joints and not carries:
@@ -72,15 +72,15 @@ def check_constraints(scene: scenes.Scene, *, moving: bool = False) -> None:
 def _problems(scene: scenes.Scene) -> tuple[tuple[Problem, ...], Problem | None]:
     """Every body of a scene that turns freely, and the first constraint that repeats others."""
     layout = input_layout(scene)
-    # Loads with a number for each node are made for the nodes of another discretisation, and hold no rod.
+    # Loads with numbers for each node were made for another discretisation, and hold no rod.
     loads = [load for load in scene.loads if layout.of_load(load.name or "", EFFECTS[load.kind].nodal) is None]
     without_nodal = scene.model_copy(update={"loads": tuple(loads)})
     probe = discrete_scene(without_nodal, layout, discretise(scene, MODES, NODES, "magnus4"))
-    # A shape that has nothing special.
+    # A generic shape: in a special one constraints may be dependent by chance.
     x = np.zeros(probe.size)
     strains = probe.unknowns.count(BlockKind.STRAIN)
     x[:strains] = 0.3 * np.random.default_rng(SEED).standard_normal(strains) * _own_units(probe)
-    # Numbers throughout: to write expressions first takes several times as long.
+    # Numbers throughout: symbolic expressions would take several times as long.
     system = System(probe, Arguments(ca.DM(x), ca.DM(layout.pack())))
     spins = tuple(_free_spins(system))
     rows = _constraint_rows(system)
@@ -96,9 +96,9 @@ def _problems(scene: scenes.Scene) -> tuple[tuple[Problem, ...], Problem | None]
 
 
 def _own_units(probe: DiscreteScene) -> FloatArray:
-    """Coordinates of all strains that bend each rod as one unit bends a rod alone, shape (strains,).
+    """Strain coordinates that bend each rod as much as one unit bends a rod that is alone, shape (strains,).
 
-    Beside a rod that is softer by far a unit bends a rod so little that it seems to be rigid.
+    In the scene's own units, one unit bends a rod beside a far softer one so little that the rod would seem rigid.
     """
     parts = []
     for rod in probe.rods.values():
@@ -110,7 +110,7 @@ def _own_units(probe: DiscreteScene) -> FloatArray:
 def _constraint_rows(system: System) -> FloatArray:
     """Derivatives of all constraint residuals with strains and floating frames, one row each."""
     unknowns = system.discrete.unknowns
-    # Rods that touch each other leave an expression of numbers.
+    # Contact of rods leaves an expression of numbers, which is evaluated here.
     jacobian = ca.evalf(ca.MX(SceneEquations(system).assembly.constraint_jacobian)).full()
     first = unknowns.count(BlockKind.STRAIN)
     last = first + unknowns.count(BlockKind.MULTIPLIER)
@@ -127,7 +127,7 @@ def _rank(rows: FloatArray) -> int:
 
 
 def _free_spins(system: System) -> Iterator[Problem]:
-    """A problem for every body whose orientation nothing holds."""
+    """A problem for every body that can turn freely."""
     remedy = "hold a tip by a fixed joint, or by a spherical one off that line"
     for i, body in enumerate(system.discrete.scene.bodies):
         if body.name in system.discrete.unloaded.riding:
@@ -145,16 +145,16 @@ def _free_spins(system: System) -> Iterator[Problem]:
 
 
 def _joints(system: System, body: scenes.Body) -> FloatArray | None:
-    """Points of the joints of a body in its axes, k×3, m; None where a joint holds its orientation."""
+    """Points of the joints of a body in its axes, k×3, m; None if a joint holds its orientation."""
     points = []
     for i, joint in enumerate(system.discrete.scene.joints):
-        # Its end in the body, be it the one that carries or the one that is carried.
+        # The end of the joint in this body, which carries the other body or is carried by it.
         ends = [end for end, name in _ends(joint) if name == body.name]
         for place in map(place_of, ends):
             points.append(place.position)
             about = system.discrete.constraint(f"joints[{i}]").held.rotations
             if about.shape[1] == 2:
-                # All but the turn about one axis is held: the body may turn about that line alone.
+                # The joint leaves one turn free: two points on its axis stand for it.
                 axis = place.rotation @ np.cross(about[:, 0], about[:, 1])
                 points.append(place.position + axis)
             elif about.size:
@@ -163,14 +163,14 @@ def _joints(system: System, body: scenes.Body) -> FloatArray | None:
 
 
 def _ends(joint: scenes.Joint) -> Iterator[tuple[scenes.Joint | scenes.CarriedBody, str | None]]:
-    """The records that place a joint, with the bodies that they place it in."""
+    """The records of the places of a joint, with the bodies that these places are in."""
     yield joint, joint.body
     if joint.carries is not None:
         yield joint.carries, joint.carries.body
 
 
 def _forces(system: System, body: scenes.Body) -> FloatArray:
-    """Points of a body that forces of fixed direction act on, in its axes, k×3, m."""
+    """Points of a body at which forces of fixed direction act, in its axes, k×3, m."""
     frame = system.frame(FrameName("body", body.name))
     loads = BodyLoads(system.discrete, body, frame.position, frame.rotation, system.arguments.inputs).all()
     points = [known(as_vector(load.position)) for load in loads if load.aligns]
@@ -178,7 +178,7 @@ def _forces(system: System, body: scenes.Body) -> FloatArray:
 
 
 def _dimension(points: FloatArray) -> int:
-    """Dimension of what points span: 0 for one point, 1 for a line."""
+    """Dimension of the affine span of points: 0 for one point, 1 for a line."""
     differences = points - points[0]
     size = max(float(np.abs(points).max(initial=0.0)), np.finfo(float).tiny)
     return int(np.linalg.matrix_rank(differences / size, tol=FLAT))

@@ -21,28 +21,28 @@ from cosserat_casadi.obstacles.registry import SURFACES
 
 
 def contact_depths(system: System) -> list[Matrix]:
-    """Depth of rods, at the section where each is deepest, of disks and bodies, relative to the width, 1×1 each.
+    """Depth of each rod at its deepest section, and of each disk and body, relative to the width, 1×1 each.
 
-    Negative outside of an obstacle; nothing without smooth contact.
+    Depths are negative outside of an obstacle; the list is empty without smooth contact.
     """
     of_obstacles = [_depth(system, load) for load in system.discrete.loads if isinstance(load, ContactLayer)]
     return [*of_obstacles, *(terms.section_pairs.depth for terms in system.pairs)]
 
 
 def thin_layers(discrete: DiscreteScene) -> list[ContactLayer]:
-    """The layers of smooth obstacles that have another side."""
+    """Layers of smooth obstacles of finite thickness, which a rod could pass through."""
     layers = [load for load in discrete.loads if isinstance(load, ContactLayer)]
     return [layer for layer in layers if isfinite(layer.obstacle.thickness)]
 
 
 def sections_lie_apart(system: System) -> Matrix | None:
-    """Whether sections lie too far apart at which thin layers, or rods that touch, are summed.
+    """Whether the sections at which the push of thin layers, or of rods, is summed lie too far apart.
 
-    Inputs or parameters may draw sections apart. Nodes at which a layer rubs, which no finer sum judges, may lie too
-    far apart as they are.
+    Inputs or parameters may draw sections apart. Nodes at which a layer with friction is summed may lie too far apart
+    from the start, and no finer sum shows the error.
 
     Returns:
-        1 where they do, else 0, 1×1; None where none can.
+        1 if some lie too far apart, else 0, 1×1; None if none can.
     """
     discrete = system.discrete
     apart = []
@@ -59,16 +59,16 @@ def sections_lie_apart(system: System) -> Matrix | None:
 
 
 def _layer_lies_apart(system: System, layer: ContactLayer) -> Matrix:
-    """Whether sections at which a layer is summed are too far apart to show their error, 1×1."""
+    """Whether sections at which a layer is summed are too far apart to show the error of the sum, 1×1."""
     assert layer.rod is not None, "it presses a rod"
     rod = system.discrete.rods[layer.rod]
     closer, finer = (own.get(layer.name) for own in (system.discrete.closer_sections, system.discrete.finer_sections))
     sections = closer or finer
     if sections is None:
-        # What rubs is summed at nodes alone.
+        # A layer with friction is summed at nodes alone.
         X, lengths, loosest = rod.grid.nodes_at(np.arange(rod.grid.size)), rod.node_lengths, LOOSEST_NODES
     else:
-        # Where the scene sums it at nodes, points of the richer scene tell.
+        # If the scene sums the layer at nodes, the points of the richer scene show the error.
         X, lengths = sections.placed.X, sections.lengths
         loosest = LOOSEST_SECTIONS if closer else LOOSEST_POINTS
     radius = ca.mmin(as_matrix(section_radii(rod.properties, X)))
@@ -113,7 +113,7 @@ def _depth(system: System, layer: ContactLayer) -> Matrix:
 
 
 def positions_before(system: System, layer: ContactLayer) -> Matrix:
-    """Positions of what a layer pushes in the axes of its obstacle, m: nodes of a rod, 3×M, a disk or a body, 3×1."""
+    """Positions of a rod's nodes, 3×M, a disk or a body, 3×1, that a layer pushes, in the axes of its obstacle, m."""
     if layer.body is not None:
         return system.frame(FrameName("body", layer.body)).position
     assert layer.rod is not None, "a layer is in front of a rod or a body"

@@ -19,7 +19,7 @@ from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.scene.accuracy import MOST_SECTIONS
 
 SURFACE_FORCE = 10.0
-"""Force per length where the gap is zero, relative to EI/(L² width), of an obstacle that is given no stiffness.
+"""Force per length where the gap is zero, relative to EI/(L² width), of an obstacle without a stiffness in the scene.
 
 A tip that meets the obstacle at a slope of 0.3 then presses with 8 EI/L² before its gap is zero, three times what
 buckles the rod.
@@ -33,34 +33,34 @@ MOST_ELEMENTS = 12
 
 LOOSEST_NODES = 1.5
 """Distance of nodes in the middle of an element over half of the stretch that a thin obstacle presses: where they are
-farther apart a rod sinks in between them, and its shape hangs on where they are."""
+farther apart a rod sinks in between them, and its shape depends on where they are."""
 
 USUAL_NODES = 12
-"""Intervals of an element up to which nodes see a layer: as many as five modes take."""
+"""Intervals of an element up to which a layer is summed at nodes: as many as five modes take."""
 
 SECTION_SPACING = 0.5
-"""Distance of the sections at which a thinner layer is summed over half of the stretch that it presses, on the fewest
+"""Spacing of the sections at which a thinner layer is summed, over half of the stretch that it presses, on the fewest
 intervals: a force (1 − s²)³ within this stretch, |s| ≤ 1, is summed to 4 thousandths by equal parts of it."""
 
 COARSEST_SUM = 1.5e-3
-"""Error of poses with sections a quarter of the stretch apart that a layer presses: it falls with the fourth power."""
+"""Pose error with sections a quarter of the pressed stretch apart: it falls with the fourth power of their spacing."""
 
 POINTS_A_PART = 3
-"""Gauss points of equal parts of an element: as close to each other as they are few, and exact at its ends."""
+"""Gauss points in each of the equal parts of an element: few, so that they are evenly spaced, and exact at its ends."""
 
 SPARE_SECTIONS = 2
-"""Sections for each usual one, where inputs or parameters may stretch a rod or make a layer thinner."""
+"""Factor on the number of sections where inputs or parameters may stretch a rod or make a layer thinner."""
 
 LOOSEST_SECTIONS = 0.75
-"""Distance of sections over half of the stretch that a layer presses, up to which an error of their sum shows: where
-they are farther apart, the stiffness that they give the layer hangs on where they are."""
+"""Spacing of sections over half of the stretch that a layer presses, up to which an error of their sum shows: where
+they are farther apart, the stiffness that they give the layer depends on where they are."""
 
 LOOSEST_POINTS = 1.0
-"""Distance of the Gauss points of a richer scene, in the middle of an element, over half of that stretch, up to which
+"""Spacing of the Gauss points of a richer scene, in the middle of an element, over half of that stretch, up to which
 an error shows: the nodes of the scene itself may lie three times as far apart."""
 
 FEWEST_NODES = 8
-"""Fewest intervals of an element: as many as three modes take. On more intervals sections are as much closer."""
+"""Fewest intervals of an element: as many as three modes take. Sections are closer in proportion on more intervals."""
 
 MOST_LAYER_NODES = 60
 """Most intervals that layers alone ask for; intervals for thinner layers wait until the grid is refined."""
@@ -69,18 +69,18 @@ NARROW = 0.2
 """Share of an element from an end that a load asks for within which contact asks for none."""
 
 SHARE_OF_LAYER = 0.5
-"""How far the error of a point on a path may move a section, over the width of the thinnest layer."""
+"""Displacement of a section that the error of a point on a path may make, over the width of the thinnest layer."""
 
 SHARE_ON_BODY = 0.25
-"""Share of an obstacle's thickness on a body: it comes to meet the rod, and neither may pass its middle."""
+"""Share of the thickness of an obstacle on a body that a step may cross: rod and body both move towards its middle."""
 
 
 def contact_layers(scene: scenes.Scene, rods: Mapping[str, DiscreteRod]) -> Iterator[ContactLayer]:
-    """The push of each obstacle with a width on each rod, row of disks and body that may not enter it.
+    """The push of each obstacle with a width on each rod, row of disks or body that may not enter it, as a load.
 
     Args:
         scene: the scene.
-        rods: by name, with the numbers that scale the equations.
+        rods: rods by name, with the numbers that scale the equations.
     """
     smooth = [obstacle for obstacle in scene.obstacles if obstacle.is_smooth]
     for obstacle in smooth:
@@ -124,7 +124,7 @@ def _stiffness(obstacle: scenes.ObstacleRecord, rod: DiscreteRod) -> float:
 
 
 def _body_stiffness(obstacle: scenes.ObstacleRecord, body: scenes.Body, rods: Mapping[str, DiscreteRod]) -> float:
-    """Stiffness of an obstacle for a body, N/m: the scene's, or as for a rod as long as the body is thick."""
+    """Stiffness of an obstacle for a body, N/m: the scene's, or else that for a rod as long as the body is thick."""
     assert obstacle.width is not None
     if obstacle.stiffness is not None:
         return obstacle.stiffness * 2 * _radius(body)
@@ -143,7 +143,7 @@ def _radius(body: scenes.Body) -> float:
 
 
 def layer_ends(scene: scenes.Scene, rod: scenes.Rod) -> list[float]:
-    """Abscissae at which elements end so that they are about as long as the stretches that obstacles or rods press."""
+    """Abscissae of element ends with which elements are about as long as the stretches that obstacles or rods press."""
     widths = [obstacle.width for obstacle in scene.obstacles if obstacle.width and obstacle.concerns(rod.name)]
     widths += pair_widths(scene, rod.name) if scene.rod_contacts else []
     if not widths:
@@ -154,11 +154,11 @@ def layer_ends(scene: scenes.Scene, rod: scenes.Rod) -> list[float]:
 
 
 def longest_step(scene: scenes.Scene) -> float:
-    """Turn of a rod in a step beside obstacles with a width, rad; infinite without any.
+    """Largest turn of a rod in a step beside obstacles with a width, rad; infinite without any.
 
-    Steps are watched as if sections went straight. Where a rod turns by θ a section is off its chord by θ²/8 of the
-    length at most: that is to be half the thickness of the thinnest obstacle. One on a body comes to meet the rod, and
-    in a step neither may go farther than :data:`SHARE_ON_BODY` of its thickness.
+    Steps are checked as if sections moved along straight lines. If a rod turns by θ a section leaves its chord by θ²/8
+    of the length at most: that may be half the thickness of the thinnest obstacle. An obstacle on a body moves too: in
+    a step neither may move farther than :data:`SHARE_ON_BODY` of its thickness.
     """
     shortest = min((rod.length for rod in scene.rods), default=1.0)
     steps = [
@@ -172,7 +172,7 @@ def longest_step(scene: scenes.Scene) -> float:
 
 
 def seeing_nodes(obstacle: scenes.ObstacleRecord, rod: RodProperties, widest: float) -> int:
-    """Intervals of an element that see how a smooth obstacle presses a rod at its nodes; 0 where it does not.
+    """Intervals of an element that resolve the push of a smooth obstacle summed at nodes; 0 if it is not summed there.
 
     Args:
         obstacle: the obstacle.
@@ -185,7 +185,7 @@ def seeing_nodes(obstacle: scenes.ObstacleRecord, rod: RodProperties, widest: fl
 
 
 def seeing_sections(obstacle: scenes.ObstacleRecord, rod: RodProperties, widest: float, tolerance: float) -> int:
-    """Sections of an element at which a layer is summed to a tolerance of poses; 0 where it rubs.
+    """Number of sections of an element that sum a layer to a tolerance of poses; 0 if the obstacle has friction.
 
     Args:
         obstacle: the obstacle.
@@ -203,7 +203,7 @@ def seeing_sections(obstacle: scenes.ObstacleRecord, rod: RodProperties, widest:
 def closer_sections(
     obstacle: scenes.ObstacleRecord, rod: DiscreteRod, *, moved: bool, stretched: bool
 ) -> SummedSections | None:
-    """The sections of a rod at which the layer of an obstacle is summed; None where that is at the nodes.
+    """The sections of a rod at which the layer of an obstacle is summed; None if it is summed at the nodes.
 
     Args:
         obstacle: the obstacle.
@@ -227,7 +227,7 @@ def closer_sections(
 
 
 def _parts_of_elements(rod: DiscreteRod, sections: int) -> SummedSections:
-    """Sections of each element, so many at least, at Gauss points of equal parts."""
+    """Summed sections at Gauss points of equal parts of each element, no fewer than a number for each."""
     count = POINTS_A_PART * ceil(sections / POINTS_A_PART)
     return SummedSections(rod, (count,) * rod.grid.elements, POINTS_A_PART)
 
@@ -245,9 +245,9 @@ def points_for(obstacle: scenes.ObstacleRecord, rod: DiscreteRod) -> SummedSecti
 
 
 def _sections_a_node(obstacle: scenes.ObstacleRecord, radius: float, widest: float) -> int:
-    """Sections for each interval of the longest element at which a layer is summed; 1 where it is at the nodes.
+    """Number of summed sections of a layer for each interval of the longest element; 1 if it is summed at the nodes.
 
-    What rubs hangs on rotations, and remembers its nodes.
+    A layer with friction depends on rotations, and remembers its nodes: it is summed there.
     """
     if obstacle.rubs or _nodes_for(obstacle, radius, widest) <= USUAL_NODES:
         return 1
@@ -255,7 +255,7 @@ def _sections_a_node(obstacle: scenes.ObstacleRecord, radius: float, widest: flo
 
 
 def _nodes_for(obstacle: scenes.ObstacleRecord, radius: float, widest: float) -> float:
-    """Intervals of the longest element on which nodes see a layer; 0 of a thick obstacle.
+    """Intervals of the longest element whose nodes resolve a layer; 0 for an obstacle that fills a half-space.
 
     Chebyshev nodes are π/2 times as far apart in the middle of an element as on the average.
     """
@@ -265,7 +265,7 @@ def _nodes_for(obstacle: scenes.ObstacleRecord, radius: float, widest: float) ->
 
 
 def half_of_stretch(obstacle: scenes.ObstacleRecord, rod: RodProperties) -> float:
-    """How far to both sides of where it touches a rod is pressed, m; before a plane where it bends by 2/L."""
+    """Half of the stretch of a rod that an obstacle presses, m; on a plane for a rod of curvature 2/L."""
     assert obstacle.width is not None, "it is smooth"
     if isfinite(obstacle.thickness):
         return pressed(obstacle, _least_radius(rod))
@@ -280,15 +280,15 @@ def _least_radius(rod: RodProperties) -> float:
 def share_of_more_modes(modes: int, added: int, element: float, half: float) -> float:
     """Change by modes beyond added ones, over the change by the added ones, where a layer presses a part of an element.
 
-    With few modes the push is at one point, for all that they see: the bending moment has a kink there, and the work of
-    the force lacks n⁻³ by n modes. Modes as short as the stretch see it as it is, and what follows them is next to
-    nothing.
+    Few modes cannot tell the push from a point force: the bending moment has a kink there, and with n modes the work of
+    the force lacks a part in proportion to n⁻³. Modes as short as the pressed stretch resolve it, and later modes add
+    next to nothing.
 
     Args:
-        modes: of the answer.
-        added: modes that it lacks, and whose change is known.
+        modes: number of modes of the answer.
+        added: number of modes that the answer lacks, with a known change.
         element: length of the element, m.
-        half: how far to both sides it is pressed, m.
+        half: half of the pressed stretch, m.
     """
     richer = float(modes + added)
     own, left, unseen = (float(count) ** -3 for count in (modes, richer, max(pi / 2 * element / half, richer)))
@@ -300,13 +300,13 @@ def pressed(obstacle: scenes.ObstacleRecord, radius: float) -> float: ...
 @overload
 def pressed(obstacle: scenes.ObstacleRecord, radius: Matrix) -> Matrix: ...
 def pressed(obstacle: scenes.ObstacleRecord, radius: float | Matrix) -> float | Matrix:
-    """How far to both sides a thin obstacle presses a straight rod, m.
+    """Half of the stretch of a straight rod that a thin obstacle presses, m.
 
-    Where the distance of their axes is d, the rod is in the layer for √(2 w d).
+    With a distance d of their axes and a width w, the rod is in the layer for √(2 w d) to both sides.
 
     Args:
         obstacle: the obstacle.
-        radius: of the rod, m.
+        radius: radius of the rod, m.
     """
     assert obstacle.width is not None, "it is smooth"
     stretch: float | Matrix = (2 * obstacle.width * (obstacle.thickness / 2 + radius)) ** 0.5
@@ -316,7 +316,7 @@ def pressed(obstacle: scenes.ObstacleRecord, radius: float | Matrix) -> float | 
 def inexact_beside(scene: scenes.Scene) -> float:
     """Error of the unknowns (2-norm) that a path may leave beside thin smooth obstacles; infinite without any.
 
-    A strain that is off by ε moves a section by about ε L. Where that is more than a layer is wide, a point may lie so
+    An error ε of a strain moves a section by about ε L. If that is more than the width of a layer, a point may lie so
     deep in it, or so far above it, that its tangent leads elsewhere, and the path stalls.
     """
     longest = max((rod.length for rod in scene.rods), default=1.0)
@@ -325,7 +325,7 @@ def inexact_beside(scene: scenes.Scene) -> float:
 
 
 def joined_ends(asked_for: tuple[float, ...], further: list[float]) -> tuple[float, ...]:
-    """Element ends that loads ask for, and ends that contact asks for where no end of a load is near."""
+    """Element ends that loads ask for, and the ends that contact asks for with no end of a load nearby."""
     if not further:
         return asked_for
     nearest = NARROW / (len(further) - 1)

@@ -1,4 +1,4 @@
-"""Pairs of rods that may not enter each other: the law by which they push, and the sections that it is summed over."""
+"""Pairs of rods that may not enter each other: the law of their push, and the sections over which it is summed."""
 
 from __future__ import annotations
 
@@ -30,16 +30,16 @@ SURFACE_STIFFNESS = 30.0
 """Stiffness relative to EI/(L² width²) of the stiffer rod, of a contact without a stiffness."""
 
 SPACING = 0.25
-"""Distance of neighbouring sections, relative to half the stretch of a rod that a section touches at no gap."""
+"""Spacing of sections, relative to half the stretch of a rod that a section of the other touches at zero gap."""
 
 LOOSEST_SPACING = 1.0
-"""Distance of sections that inputs or parameters have drawn apart, relative to half of that stretch, up to which the
+"""Spacing of sections that inputs or parameters have drawn apart, relative to half of that stretch, up to which the
 error of their sum shows."""
 
 FROM_ITSELF = 2.0
 """Distance along a rod, relative to its diameter and the width, below which its sections do not touch.
 
-Bent to a circle of more than 0.53 times diameter and width, a rod keeps such sections apart by more than these.
+A rod bent to a circle with a radius above 0.53 times diameter plus width keeps such sections farther apart than these.
 """
 
 ANYWHERE = 1e100
@@ -61,12 +61,12 @@ class ContactPair:
     """Two rods that push each other, or one that pushes itself.
 
     Attributes:
-        name: of the contact, for people.
-        rods: their names; the same twice of a rod and itself.
-        width: gap from which on they push, m.
+        name: name of the contact, for messages.
+        rods: names of both rods; one name twice for a rod that touches itself.
+        width: gap below which the rods push, m.
         stiffness: rate of the force per length with the gap where parallel rods touch, N/m².
-        apart: how far the second section is along the rod from the first at least, m; far below zero for two rods. It
-            may be an expression of parameters.
+        apart: least distance along the rod from the first section to the second, m; far below zero for two rods. It may
+            be an expression of parameters.
         sections: number of sections of each rod.
         friction: coefficient of friction.
         slip_speed: speed below which sticking sections creep, m/s.
@@ -82,11 +82,11 @@ class ContactPair:
     slip_speed: float
 
     def widened(self, ratio: float) -> ContactPair:
-        """The pair with a width so many times as large, which pushes about as hard where the gap is zero."""
+        """The pair with its width times a ratio; it pushes about as hard at zero gap."""
         return self if ratio == 1.0 else replace(self, width=ratio * self.width, stiffness=self.stiffness / ratio)
 
     def finer(self, factor: int) -> ContactPair:
-        """The pair with so many times as many sections."""
+        """The pair with its numbers of sections times a factor."""
         first, second = self.sections
         return replace(self, sections=(factor * first, factor * second))
 
@@ -97,14 +97,14 @@ class ContactPair:
 
     @property
     def slip_way(self) -> float:
-        """How far sections are dragged along a path where they slip, m.
+        """Drag of sections that slip along a path, m.
 
-        Up to there a surface as deep as the layer where sections touch, w/3, is as stiff along as it is across.
+        Up to this drag a surface as deep as the layer of sections that touch, w/3, is as stiff along as across.
         """
         return self.friction * self.width / 3
 
     def meets(self, first: FloatArray, second: FloatArray) -> npt.NDArray[np.bool_]:
-        """Which sections may touch each other, by their distances along both rods, m, shape (first, second)."""
+        """Whether sections at these distances along both rods, m, may touch each other, shape (first, second)."""
         return second - first[:, None] >= float(self.apart)
 
     @property
@@ -114,7 +114,7 @@ class ContactPair:
 
 
 def named_pairs(scene: scenes.Scene) -> Iterator[tuple[RodContact, tuple[str, str]]]:
-    """The contacts of a scene with the rods of each pair; a pair that several name belongs to the first of these."""
+    """Contacts of a scene with the rods of each pair; a pair named by several contacts belongs to the first of them."""
     ties: list[tuple[Any, Any]] = [(rod.name, rod.base.rod) for rod in scene.rods if rod.base.rod is not None]
     for joint in scene.joints:
         ends = [("body", place.body) for place in joint.places] + ([joint.rod] if joint.rod else [])
@@ -140,7 +140,7 @@ def contact_pairs(
 
     Args:
         scene: the scene.
-        nominal: its rods with the numbers that scale the equations.
+        nominal: rods of the scene with the numbers that scale the equations.
         rods: the same on the grids that are asked for.
 
     Raises:
@@ -175,7 +175,7 @@ def contact_pairs(
 def section_places(rod: DiscreteRod, count: int) -> tuple[FloatArray, FloatArray]:
     """Abscissae of the sections of a rod whose elements end at known places, and the share that each stands for."""
     coordinates = (np.arange(count) + 0.5) / count
-    # Sections stay in their elements, as those of the equations do.
+    # Sections stay in their elements, as the sections of the equations do.
     elements = replace(rod.grid, ends=None).element_of(coordinates)
     rates = rod.grid.rates_in(elements)
     shares = np.full(count, 1.0 / count)
@@ -217,7 +217,7 @@ def _width(contact: RodContact, radii: Sequence[FloatArray]) -> float:
 
 
 def _sections(name: str, rod: DiscreteRod, spacing: float) -> int:
-    """Number of sections so near each other; on another grid they stand elsewhere, so that their error shows."""
+    """Number of sections at this spacing; another grid places them elsewhere, so that the error of their sum shows."""
     wanted = rod.properties.length / spacing
     if wanted > MOST_SECTIONS:
         problem = f"the contact {name!r} takes {wanted:.0f} sections of {rod.properties.name!r}, above {MOST_SECTIONS}"
@@ -228,14 +228,14 @@ def _sections(name: str, rod: DiscreteRod, spacing: float) -> int:
 
 @dataclass(frozen=True)
 class PairHistory:
-    """The history of friction of a pair: where sections were at the last point of a path, and how far dragged.
+    """The history of friction of a pair: poses and drags of sections at the last point of a path.
 
-    The way of two sections past each other is the way of the points that touch since the last point of the path, and
-    how far the section of the first rod was dragged then. So a section that comes to touch another one keeps its drag.
+    The slip of two sections past each other is the displacement of the touching points since the last point of the path
+    plus the drag of the first rod's section at that point. So a section that comes to touch another one keeps its drag.
 
     Attributes:
-        drag: how far the sections of the first rod are dragged, 3×k, m, world axes.
-        poses: poses of each rod at the nodes of its grid, POSE×M, world axes; zeros before anything is known.
+        drag: drag of the sections of the first rod, 3×k, m, world axes.
+        poses: poses of each rod at the nodes of its grid, POSE×M, world axes; zeros before there is a history.
     """
 
     drag: Matrix
@@ -243,7 +243,7 @@ class PairHistory:
 
     @classmethod
     def of_column(cls, column: Matrix, pair: ContactPair, grids: Mapping[str, Grid]) -> PairHistory:
-        """The history that an input holds, whose sections may be others than the pair has now.
+        """The history from an input; its sections need not be the sections that the pair has now.
 
         Args:
             column: the input, h×1.
@@ -275,5 +275,5 @@ class PairHistory:
 
 
 def history_size(pair: ContactPair, grids: Mapping[str, Grid]) -> int:
-    """Numbers that friction of a pair remembers, of rods on these grids."""
+    """Count of numbers that friction of a pair remembers for rods on these grids."""
     return 3 * pair.sections[0] + POSE * sum(grids[name].size for name in set(pair.rods))

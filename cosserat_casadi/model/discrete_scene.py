@@ -1,8 +1,8 @@
-"""A scene with everything settled that does not depend on the unknowns.
+"""A scene with all its constants: everything that does not depend on the unknowns.
 
-The order of x follows from it: strains of the rods, multipliers of the constraints, deviations of the floating frames,
-coordinates of joints, tensions of the cables of given length, as in docs/theory.md, section 8; in motion then flows of
-rods whose stress relaxes.
+The order of x follows from these: strains of the rods, multipliers of the constraints, deviations of the floating
+frames, coordinates of joints, tensions of the cables of given length, as in docs/theory.md, section 8; in motion also
+flows of rods with relaxing stress.
 """
 
 from __future__ import annotations
@@ -58,14 +58,14 @@ from cosserat_casadi.scene.constraint_records import STOP_KEYS, AxisJoint
 from cosserat_casadi.scene.input_fields import InputField
 
 UNEVEN = 1e4
-"""Largest EI/ℓ, over the least of a scene, that scales equations: what soft rods bear is rounding in a stiffer unit."""
+"""Largest unit EI/ℓ over the least EI/ℓ of a scene: in a stiffer unit the forces of soft rods would be rounding."""
 
 NO_SOFTNESS = 1e-9
-"""Softness below which a rod does not yield to a cable, but for rounding."""
+"""Softness below which a rod yields to a cable by rounding alone."""
 
 
 FINER_PAIRS = 2
-"""Sections of a richer scene for each one at which a scene sums the push of rods that parameters may draw apart."""
+"""Sections of a richer scene for each section by which a scene sums the push of rods that parameters may stretch."""
 
 FINER_SECTIONS = 3
 """Sections of a richer scene for each section, or interval, by which a scene sums a layer: its error shows."""
@@ -74,13 +74,13 @@ FINER_ON_PLANES = 2
 """Sections of a richer scene for each interval where an obstacle is a plane, which presses longer stretches."""
 
 STEPS_OF_LAWS = 3
-"""Steps of conjugate gradients by which an elastic step goes where laws couple strains, or vary along a rod."""
+"""Steps of conjugate gradients of an elastic step whose material laws couple strains, or vary along a rod."""
 
 NO_ENERGY = 1e-30
-"""Energy of a step, in units of EI/ℓ, that is none."""
+"""Energy of a step, in units of EI/ℓ, that counts as zero."""
 
 SOFTEST = 0.01
-"""Least tangent stiffness of a mode over that of Hooke's law: what softens more is held by something else."""
+"""Least ratio of a mode's tangent stiffness to Hooke's law: a mode that is softer is held by something else."""
 
 
 @dataclass(frozen=True)
@@ -88,8 +88,8 @@ class CableOfLength:
     """A tendon of given length, whose tension is an unknown.
 
     Attributes:
-        tendon: as the scene has it.
-        softness: length, relative to the rod's, that a unit of tension takes from the cable in the unloaded rod.
+        tendon: record of the tendon in the scene.
+        softness: shortening of the cable by a unit of tension in the unloaded rod, relative to the rod's length.
     """
 
     tendon: scenes.Actuator
@@ -102,7 +102,7 @@ class CableOfLength:
 
     @property
     def compliance(self) -> Compliance:
-        """The spring between its length and the wanted one, as soft as the rod: tensions grow all along the way."""
+        """Compliance of a spring between its length and the given one, as soft as the rod."""
         # The row of a cable that may go slack grows with its tension; that of another cable, −s, falls with it.
         if self.may_go_slack:
             return Compliance(power=1, scale=self.softness)
@@ -115,8 +115,8 @@ class JointStop:
 
     Attributes:
         placed: the joint.
-        bound: coordinate that it stops, rad or m.
-        side: 1 for the least coordinate, −1 for the largest: where the stop pushes to.
+        bound: coordinate of the joint at the stop, rad or m.
+        side: direction of the push: 1 for the stop at the least coordinate, −1 for the largest.
         stiffness: of an elastic stop, N m/rad or N/m; None of a rigid one.
     """
 
@@ -127,7 +127,7 @@ class JointStop:
 
     @property
     def softness(self) -> Matrix:
-        """How far an elastic stop gives way to a unit of its push, in the unit of the unknown, 1×1."""
+        """Deflection of an elastic stop under a unit of its push, in the unit of the coordinate as an unknown, 1×1."""
         assert self.stiffness is not None, "asked for of an elastic stop"
         return self.placed.constraint.unit / self.placed.coordinate_scale**2 / as_matrix(as_vector([self.stiffness]))
 
@@ -143,7 +143,7 @@ class JointStop:
 
 
 STOP_COMPLIANCE = Compliance(power=1)
-"""A stop yields by a unit of its coordinate for a unit of its push, on the way to the scene."""
+"""Compliance of a stop on the load path: one unit of its coordinate for a unit of its push."""
 
 
 @dataclass(frozen=True)
@@ -151,12 +151,12 @@ class DiscreteScene:
     """A scene with its constant matrices.
 
     Attributes:
-        scene: the scene that the equations are of; its numbers may be expressions of parameters.
+        scene: the scene of the equations; its numbers may be expressions of parameters.
         layout: its inputs.
         rods: the constant matrices of each rod.
-        parameters: the parameters that its expressions are of.
+        parameters: the parameters in its expressions.
         scaling: the scene with the numbers that scale the equations; None where this scene holds them itself.
-        moving: whether it is for a motion, in which stress that relaxes has flows.
+        moving: whether it is for a motion, in which relaxing stress has flows as unknowns.
         memory: grids of the rods at whose nodes loads remember sections along a path; None for the scene's own grids.
         layers: factor on the widths of smooth contact of the scene.
         given_sections: sections at which layers are summed, by the name of the load; None for the sections that the
@@ -174,7 +174,7 @@ class DiscreteScene:
     given_sections: Mapping[str | None, SummedSections] | None = None
 
     def __reduce__(self) -> tuple[Callable[..., DiscreteScene], tuple[Any, ...]]:
-        """How pickle and copy make the scene anew: from its description, since CasADi's symbols cannot be stored."""
+        """Pickle and copy rebuild the scene from its description, since CasADi's symbols cannot be stored."""
         if self.layers != 1.0:
             return DiscreteScene.with_layers, (self.with_layers(1.0), self.layers)
         if self.scaling is None:
@@ -196,30 +196,30 @@ class DiscreteScene:
         return replace(self, scaling=scaling, moving=True)
 
     def told_as(self, scene: scenes.Scene) -> DiscreteScene:
-        """The constants of this scene for a scene that no equation tells from it, as :meth:`Scene.of_equations`."""
+        """These constants for a scene that differs only in keys that :meth:`Scene.of_equations` leaves out."""
         told = replace(self, scene=scene)
-        # They follow from the places of frames, which take time to find.
+        # The unknowns follow from the unloaded poses of frames, which take time to compute: they are kept.
         assert self.unknowns, "a scene has unknowns"
         vars(told).update({name: value for name, value in vars(self).items() if name != "scene"})
         return told
 
     @cached_property
     def unloaded(self) -> UnloadedScene:
-        """Poses of rods and bodies where nothing acts and no parameter differs: deviations are counted from them."""
+        """Unloaded poses of rods and bodies for the scaling scene's numbers, from which deviations are counted."""
         if self.scaling is not None:
             return self.scaling.unloaded
         return UnloadedScene(self.scene, self.rods)
 
     @cached_property
     def own_unloaded(self) -> UnloadedScene:
-        """Poses of rods where nothing acts, by the scene's own numbers."""
+        """Unloaded poses of rods and bodies for this scene's own numbers."""
         return UnloadedScene(self.scene, self.rods)
 
     def carrier_moves(self, rod: str) -> bool:
-        """Whether an expression of parameters moves what carries an unloaded rod: a section of another, or a body."""
+        """Whether an expression of parameters moves the carrier of an unloaded rod: a section of a rod, or a body."""
         base = self.records[rod].base
         if rod in self.scene.jointed_bases and rod not in self.scene.base_joints:
-            # A body is where its joints have it, which are where rods are that may hold other bodies.
+            # The pose of a body follows from its joints, these from the poses of rods, which may hold further bodies.
             places = [entry for joint in self.scene.joints for entry in (joint.position, joint.quaternion)]
             return any_symbolic(places) or any(self._moves_itself(other) for other in self.records)
         if base.rod is None:
@@ -227,25 +227,25 @@ class DiscreteScene:
         return any_symbolic([base.at]) or self._moves_itself(base.rod) or self.carrier_moves(base.rod)
 
     def _moves_itself(self, rod: str) -> bool:
-        """Whether an expression of parameters shapes an unloaded rod, or places it on what carries it."""
+        """Whether an expression of parameters shapes an unloaded rod, or places it on its carrier."""
         record = self.records[rod]
         shaping = [record.length, record.intrinsic.curvature, record.intrinsic.tangent]
         return any_symbolic([*shaping, record.base.position, record.base.quaternion])
 
     @cached_property
     def loads(self) -> tuple[scenes.LoadRecord, ...]:
-        """The loads of the scene, then what its obstacles with a width press with."""
+        """The loads of the scene, then the contact layers of its obstacles with a width."""
         layers = contact_layers(self.scene, self.nominal.rods)
         return (*self.scene.loads, *(layer.widened(self.layers) for layer in layers))
 
     @cached_property
     def closer_sections(self) -> dict[str | None, SummedSections]:
-        """Sections at which layers are summed that come and go between the nodes of a rod, by the name of the load."""
+        """Sections at which layers too thin for the nodes of a rod are summed, by the name of the load."""
         if self.given_sections is not None:
             return {
                 name: replace(own, rod=self.rods[own.rod.properties.name]) for name, own in self.given_sections.items()
             }
-        # Of the scene's own numbers: parameters and other widths change no number of sections.
+        # By the scaling scene's numbers: parameters and other widths do not change the number of sections.
         found: dict[str | None, SummedSections] = {}
         for layer in contact_layers(self.nominal.scene, self.nominal.rods):
             if layer.rod is None or layer.at is not None:
@@ -262,7 +262,7 @@ class DiscreteScene:
 
     @cached_property
     def stretched_layers(self) -> list[str | None]:
-        """Names of the layers whose width, or the length or a radius of whose rod, inputs or parameters change."""
+        """Names of layers for which inputs or parameters change the width, or the length or a radius of the rod."""
         return [
             layer.name
             for layer in contact_layers(self._named.scene, self.nominal.rods)
@@ -277,14 +277,14 @@ class DiscreteScene:
 
     @property
     def may_lie_apart(self) -> bool:
-        """Whether sections at which contact is summed may lie too far apart to tell its error in motion."""
+        """Whether sections at which contact is summed may lie too far apart, in motion, to show its error."""
         rubs = any(obstacle.is_smooth and obstacle.rubs for obstacle in self.scene.obstacles)
         touching = {name for pair in self.pairs for name in pair.rods}
         drawn = any(map(self.draws_apart, {*touching, *self.pressed_rods}))
         return rubs or drawn or bool(self.stretched_layers)
 
     def draws_apart(self, rod: str) -> bool:
-        """Whether inputs or parameters may draw sections of a rod apart, or let less of it be pressed."""
+        """Whether inputs or parameters may draw sections of a rod apart, or shorten its pressed stretch."""
         return self.is_stretched(rod) or self._named.rods[rod].grid.ends is not None
 
     @cached_property
@@ -320,19 +320,19 @@ class DiscreteScene:
         if not self.scene.rod_contacts:
             return ()
         pairs = [pair.widened(self.layers) for pair in contact_pairs(self.scene, self.nominal.rods, self.rods)]
-        # With sections of another scene it is there to show the errors of that one.
+        # A scene with given sections shows the errors of another scene.
         if self.given_sections is None:
             return tuple(pairs)
         return tuple(pair.finer(FINER_PAIRS) if any(map(self.draws_apart, pair.rods)) else pair for pair in pairs)
 
     @property
     def has_layers(self) -> bool:
-        """Whether obstacles or rods push from a width on."""
+        """Whether the scene has smooth contact, of obstacles or of rods."""
         return bool(self.pairs) or any(isinstance(load, ContactLayer) for load in self.loads)
 
     @property
     def pressed_rods(self) -> dict[str, float]:
-        """How far to both sides the narrowest layer presses each rod that layers press, m."""
+        """Half of the shortest stretch that a layer presses, m, by rod; rods that no layer presses are left out."""
         halves: dict[str, float] = {}
         for layer in contact_layers(self.nominal.scene, self.nominal.rods):
             if layer.rod is not None and layer.at is None:
@@ -341,7 +341,7 @@ class DiscreteScene:
         return halves
 
     def share_of_more_modes(self, added: int) -> float:
-        """Change by modes beyond added ones where layers press rods, over the change by the added ones; else 0."""
+        """Change of an answer by modes beyond added ones, over the change by these; 0 if no layer presses a rod."""
         shares = [0.0]
         for name, half in self.pressed_rods.items():
             rod = self.nominal.rods[name]
@@ -350,7 +350,7 @@ class DiscreteScene:
         return max(shares)
 
     def with_layers(self, ratio: float) -> DiscreteScene:
-        """This scene with widths of smooth contact times a ratio; it pushes as hard where gaps are zero."""
+        """This scene with the widths of smooth contact times a ratio; the force at zero gap stays the same."""
         return replace(self, layers=ratio)
 
     @cached_property
@@ -389,10 +389,10 @@ class DiscreteScene:
         ]
 
     def _softness(self, actuator: scenes.Actuator) -> float:
-        """Length, over the rod's, that a unit of tension takes from a cable: gᵀ K⁻¹ g with g = ∂L/∂q / ℓ at q = 0.
+        """Shortening of a cable by a unit of tension, over the rod's length: gᵀ K⁻¹ g with g = ∂L/∂q / ℓ at q = 0.
 
-        By the numbers that scale the equations. One where the unloaded rod does not yield at all, as to a cable along
-        the axis of a rod that does not stretch.
+        It is computed with the numbers that scale the equations. It is 1 if the unloaded rod does not yield, as to a
+        cable along the axis of an inextensible rod.
         """
         nominal = self.nominal
         rod = nominal.rods[actuator.rod]
@@ -404,7 +404,7 @@ class DiscreteScene:
         return softness if softness > NO_SOFTNESS else 1.0
 
     def constraint(self, where: str) -> SectionConstraint:
-        """The constraint of a table of the scene, by its path.
+        """The constraint that a table of the scene describes, by the path of the table.
 
         Raises:
             KeyError: there is no such table.
@@ -416,15 +416,15 @@ class DiscreteScene:
 
     @property
     def is_assembly(self) -> bool:
-        """Whether constraints close rods to each other, or a carried rod to the world."""
+        """Whether constraints tie rods to each other, or a carried rod to the world."""
         return any(placed.closes_assembly for placed in self.constraints)
 
     @cached_property
     def closed_unloaded(self) -> bool:
-        """Whether its assembly is closed where nothing acts, and stays so while loads alone grow.
+        """Whether all constraints of the assembly are closed in the unloaded scene and along the load path.
 
-        So it is where each floating frame is fixed to one section, nothing closes a loop, and neither parameters nor
-        inputs move rods: no spring has to draw anything together then.
+        This holds if each floating frame is fixed to one section, no constraint closes a loop, and neither parameters
+        nor inputs move rods: no spring then has to draw anything together.
         """
         ties = [placed for placed in self.constraints if placed.closes_assembly]
         held = [placed.frame for placed in ties if placed.constraint.held is CLAMPED]
@@ -449,7 +449,7 @@ class DiscreteScene:
             yield UnknownBlock(
                 BlockKind.MULTIPLIER, placed.where, placed.rod, placed.size, unit, step_weight=placed.step_weight
             )
-        # Several rods may meet in a frame, so that it is solved with none of them.
+        # Several rods may meet in a frame, so that its block belongs to none of them.
         for frame_name, frame in self.frames.items():
             yield UnknownBlock(BlockKind.POSE, str(frame_name), None, FloatingFrame.SIZE, frame.unit)
         for placed in self.free_coordinates:
@@ -468,7 +468,7 @@ class DiscreteScene:
 
     @cached_property
     def free_coordinates(self) -> list[PlacedConstraint]:
-        """Joints whose coordinate is an unknown: something acts along it, and no drive prescribes it."""
+        """Joints with an unknown coordinate: a spring, damper, motor or stop acts along it, no drive prescribes it."""
         return [
             placed
             for placed in self.constraints
@@ -499,7 +499,7 @@ class DiscreteScene:
 
     @property
     def pair_rows(self) -> list[int]:
-        """Rows of pairs of which one is zero: of cables that may go slack, then of stops."""
+        """Rows of complementary pairs, one of which is zero: of cables that may go slack, then of stops."""
         of_cables = [self.tension(cable).start for cable in self.cables if cable.may_go_slack]
         return [*of_cables, *(self.stop(stop).start for stop in self.stops)]
 
@@ -535,7 +535,7 @@ class DiscreteScene:
 
     @cached_property
     def richer(self) -> Richer:
-        """This scene with modes and intervals added, on which the error of an answer shows."""
+        """This scene with modes and intervals added, on which the error of an answer is estimated."""
         nominal = self.nominal
         discretisation = {
             name: enriched(
@@ -553,10 +553,10 @@ class DiscreteScene:
 
     @cached_property
     def finer_sections(self) -> dict[str | None, SummedSections]:
-        """Sections of the richer scene at which layers are summed, by the name of the load: their error shows."""
+        """Sections at which the richer scene sums layers, by the name of the load; they show the scene's error."""
         finer: dict[str | None, SummedSections] = {}
         for layer in contact_layers(self.nominal.scene, self.nominal.rods):
-            # Friction hangs on rotations, and on what nodes remember: it is summed at nodes.
+            # Friction depends on rotations, and on the memory of the nodes: it is summed at nodes.
             rubs = layer.obstacle.rubs and (self.moving or self.layout.memory is not None)
             if layer.rod is None or layer.at is not None or rubs:
                 continue
@@ -583,7 +583,7 @@ class Richer:
 
     Attributes:
         coarse: the scene whose answers are judged.
-        discrete: the same scene with modes and intervals added.
+        discrete: the coarse scene with modes and intervals added.
     """
 
     coarse: DiscreteScene
@@ -591,7 +591,7 @@ class Richer:
 
     @cached_property
     def known(self) -> npt.NDArray[np.bool_]:
-        """Which unknowns the coarse scene has too: all but the strains of higher degree; shape (richer size,)."""
+        """Whether each unknown is one of the coarse scene too, not a strain of higher degree; shape (richer size,)."""
         known = np.ones(self.discrete.size, dtype=bool)
         # Flows have the modes of strains, once for each branch.
         for block, entries in self.discrete.unknowns.of_kind(BlockKind.STRAIN, BlockKind.FLOW):
@@ -603,7 +603,7 @@ class Richer:
 
     @cached_property
     def missing_rods(self) -> list[str]:
-        """The rod of each coordinate that the coarse scene lacks."""
+        """Name of the rod of each coordinate that the coarse scene lacks."""
         blocks = self.discrete.unknowns.blocks
         rods = np.repeat([block.rod or "" for block in blocks], [block.size for block in blocks])
         return [str(rod) for rod in rods[~self.known]]
@@ -650,23 +650,23 @@ class Richer:
         return ca.vertcat(x, missing)[places.tolist()]
 
     def split(self, richer: Matrix) -> tuple[Matrix, Matrix]:
-        """Entries of a vector of the richer scene, parted into unknowns of the coarse one and missing ones."""
+        """Split a vector of the richer scene into entries of the coarse scene's unknowns and of the missing ones."""
         known = np.flatnonzero(self.known).tolist()
         missing = np.flatnonzero(~self.known).tolist()
         return richer[known], richer[missing]
 
     def elastic_step(self, residual: Matrix, shapes: Mapping[str, Shape]) -> Matrix:
-        """Step by which elasticity alone would take up what the balance lacks in the missing coordinates.
+        """Step by which elasticity alone would cancel the residual in the missing coordinates.
 
-        The step −K⁻¹ r of all strains, K the stiffness of the richer rods. With parameters K is scaled by its diagonal.
-        With laws of materials K is the stiffness at the strains, and the step goes by conjugate gradients.
+        The step is −K⁻¹ r for all strains, with the stiffness K of the richer rods. With parameters K is scaled by its
+        diagonal. With nonlinear materials K is the tangent stiffness, and conjugate gradients compute the step.
 
         Args:
-            residual: of the richer scene in the missing coordinates, missing×1.
-            shapes: of the richer rods.
+            residual: residual of the richer scene in the missing coordinates, missing×1.
+            shapes: shapes of the richer rods.
 
         Returns:
-            step of all unknowns of the richer scene, zero for unknowns that are no strains.
+            step of all unknowns of the richer scene, size×1, zero for unknowns that are not strains.
         """
         further = {name: stiffness_beyond_hooke(shape) for name, shape in shapes.items()}
         lacking = self.joined(ca.DM(self.coarse.size, 1), residual)
@@ -705,7 +705,7 @@ class Richer:
 
     @cached_property
     def _nominal_flexibility(self) -> ca.DM:
-        """K⁻¹ of all rods by the numbers that scale the equations, zero for unknowns that are no strains."""
+        """K⁻¹ of all rods by the numbers that scale the equations, size×size, zero for other unknowns than strains."""
         size = self.discrete.size
         flexibility = np.zeros((size, size))
         nominal = self.discrete.nominal
@@ -729,7 +729,7 @@ class Richer:
 def discrete_scene(
     scene: scenes.Scene, layout: InputLayout, discretisation: Mapping[str, Discretisation], moving: bool = False
 ) -> DiscreteScene:
-    """Constant matrices of every rod of a scene, be it for a motion."""
+    """The discrete scene of a scene at rest or, with ``moving``, in motion."""
     rods = {}
     every = [replace(rod_properties(rod), fixed_masses=fixed_masses(scene, rod.name)) for rod in scene.rods]
     softest = min(properties.bending_stiffness / properties.length for properties in every)
@@ -749,7 +749,7 @@ def with_numbers(
     Args:
         nominal: the scene that scales the equations.
         scene: the scene with other numbers.
-        parameters: what its expressions are of.
+        parameters: the parameters in its expressions.
     """
     rods = {}
     for rod in scene.rods:
@@ -762,7 +762,7 @@ def with_numbers(
 
 
 def with_parameters(nominal: DiscreteScene) -> DiscreteScene:
-    """A scene whose parameters are entries of one symbol; its file's values decide on the scaling and the grids.
+    """The scene with parameters as entries of one symbol; the values of its file set the scaling and the grids.
 
     Raises:
         SceneError: a parameter would move a place that elements cannot follow.

@@ -1,4 +1,4 @@
-"""Modes, nodes and element ends of every rod of a scene, and the richer ones on which the error of an answer shows.
+"""Modes, nodes and element ends of every rod of a scene, and the richer discretisation that shows an answer's error.
 
 The richer discretisation has the modes and intervals that an answer lacks: docs/theory.md, section 10.
 """
@@ -23,7 +23,7 @@ DEFAULT_TRANSPORT = "magnus6"
 
 
 ADDED_MODES = 3
-"""Modes that are added to every strain: more than one step of an error that falls by every other mode alone."""
+"""Modes added to every strain: several, since an error may fall with every other mode alone."""
 
 ADDED_MODES_IN_LAYERS = 6
 """Modes that are added where layers press a part of an element: the error falls with the third power of the modes."""
@@ -32,7 +32,7 @@ ADDED_NODES = 4
 """Intervals that are added to every element at least."""
 
 NODES_ABOVE_MODES = 3
-"""Intervals beyond the modes of a strain on which the balance of these modes is exact enough for an error."""
+"""Intervals beyond the modes of a strain with which an error estimate by these modes is exact enough."""
 
 NODES_ABOVE_MODES_IN_CONTACT = 8
 """Intervals beyond the modes of a strain where obstacles press on a few nodes: so short a push needs more of them."""
@@ -41,10 +41,10 @@ NODES_ABOVE_MODES_BESIDE_KINKS = 12
 """Intervals beyond the modes of a strain beside a kink in the pull of a cable, or in drag: their error falls slowly."""
 
 NEXT_ORDER = {"magnus4": "magnus6", "magnus6": "magnus8"}
-"""Rotation integrators of a higher order, so that the error of the order itself shows."""
+"""Rotation integrators of the next higher order, which show the error of the order itself."""
 
 ENOUGH_GROWTH = {"magnus4": 1.7, "magnus6": 1.4, "magnus8": 1.3}
-"""Factor on the intervals that shows seven eighths of the error of the order too; no order is above the highest."""
+"""Factor on the intervals of the highest order, which shows seven eighths of the error of the order."""
 
 
 def discretise(
@@ -79,24 +79,24 @@ def discretise(
 
 
 def summed_at(chosen: Mapping[str, Discretisation], sections: int) -> dict[str, Discretisation]:
-    """A discretisation that sums layers at so many sections of each element at least."""
+    """The discretisation of every rod, with at least this number of summed sections of layers in each element."""
     return {name: replace(own, sections=max(own.sections, sections)) for name, own in chosen.items()}
 
 
 def with_discretisation(scene: scenes.Scene, chosen: Mapping[str, Discretisation]) -> scenes.Scene:
-    """The scene with modes, nodes and rotation fixed, so that :func:`discretise` gives the same again.
+    """The scene with modes, nodes and rotation fixed, so that :func:`discretise` returns this discretisation.
 
     A scene that leaves them open asks for its tolerance, written or not: with them fixed it still does.
 
     Args:
         scene: the scene.
-        chosen: of every rod; their elements end where the scene makes them.
+        chosen: discretisation of every rod; elements end where the scene has them end.
     """
     numbers = {name: _described(own) for name, own in chosen.items()}
     first = next(iter(numbers.values()))
     counts = {len(own.modes) for own in chosen.values()}
     if len(counts) > 1 and not isinstance(first["modes"], int):
-        # A list suits rods of as many strains alone.
+        # A list of modes has one number for each strain: it cannot serve rods with different numbers of strains.
         first = {**first, "modes": max(first["modes"])}
     others = tuple(scenes.RodDiscretisation(rod=name, **own) for name, own in numbers.items() if own != first)
     given = scene.accuracy.model_dump(by_alias=True, exclude_unset=True)
@@ -109,7 +109,7 @@ def with_discretisation(scene: scenes.Scene, chosen: Mapping[str, Discretisation
 
 
 def _described(chosen: Discretisation) -> dict[str, Any]:
-    """A discretisation in the words of the scene format: one number of modes where all strains have as many."""
+    """Keys of the scene format for a discretisation, with one number of modes if all strains have the same."""
     modes = chosen.modes[0] if len(set(chosen.modes)) == 1 else chosen.modes
     summed = {"sections": chosen.sections} if chosen.sections else {}
     return {"modes": modes, "nodes": chosen.nodes, "rotation": chosen.transport, **summed}
@@ -121,7 +121,7 @@ def nodes_for(modes: int) -> int:
 
 
 def nodes_above_modes(scene: scenes.Scene, rod: str, *, touches: bool) -> int:
-    """Intervals beyond the modes of a strain on which the error of a rod shows, which touches something or nothing."""
+    """Intervals beyond the modes of a strain that show the error of a rod; ``touches``: whether it is in contact."""
     of_cables = any(actuator.rod == rod and actuator.has_kinks for actuator in scene.actuators)
     if of_cables or any(load.has_kinks_on(rod) for load in scene.loads):
         return NODES_ABOVE_MODES_BESIDE_KINKS
@@ -134,8 +134,8 @@ def enriched(
     """A discretisation with modes added to every strain, on intervals that resolve them.
 
     Args:
-        discretisation: of a rod.
-        seeing_modes: modes below which a rod is blind to what goes on along it.
+        discretisation: discretisation of a rod.
+        seeing_modes: modes below which a rod cannot resolve the loads and strains along it.
         above_modes: intervals beyond the modes, of :func:`nodes_above_modes`.
         in_layers: whether layers press the rod.
     """

@@ -1,9 +1,9 @@
-"""Drag: the share of motion in loads that bodies bear or that act on bodies, such as damping and friction of contact.
+"""Drag: the part of loads on or from bodies that motion makes, such as damping and friction of contact.
 
-A load on a rod that a body sees hangs on how the rod moves as the body sees it, one on a body on how the body moves.
-What motion adds to its value at rest is its drag. In the world it is a wrench on the sections, and the opposite on the
-body. At fixed drag the equations are as for dead loads; how the drag changes is added to their derivatives in
-model/motion_functions.py.
+A load on a rod from an obstacle on a body depends on the rod's motion relative to the body, a load on a body on the
+body's motion. The part that motion adds to the load at rest is its drag. In the world it is a wrench on the sections,
+and the opposite on the body. At fixed drag the equations are as for dead loads; how the drag changes is added to their
+derivatives in model/motion_functions.py.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def drags_of(system: System) -> Iterator[RodDrag | BodyDrag]:
 
 
 def seen_motion(system: System, rod: str, body: str | None) -> SeenMotion:
-    """Motion of the sections of a rod as a body sees it, or the world, axes of the base of the rod."""
+    """Motion of the sections of a rod relative to a body, or to the world, axes of the rod's base."""
     own = system.motions[rod]
     if body is None:
         return SeenMotion(own.velocity, own.angular_velocity)
@@ -64,25 +64,25 @@ def seen_motion(system: System, rod: str, body: str | None) -> SeenMotion:
 
 
 class Drag(ABC):
-    """A drag, and its derivatives."""
+    """A drag with its derivatives."""
 
     @property
     @abstractmethod
     def frictions(self) -> Sequence[Matrix]:
-        """Wrenches of the drag, and of the opposite that a body or a section bears; world axes."""
+        """Wrenches of the drag and of its reaction on a body or a section, world axes."""
 
     def friction_jacobian(self, argument: Matrix) -> Matrix:
-        """Derivative of the drag on the rod and on the body, stacked, with an argument."""
+        """Derivative of the drag on the rod and on the body, stacked, with respect to an argument."""
         return ca.jacobian(ca.vertcat(*map(ca.vec, self.frictions)), argument)
 
 
 @dataclass(frozen=True)
 class RodDrag(Drag):
-    """The drag of a load on a rod, whose opposite a body bears.
+    """The drag of a load on a rod, with its reaction on a body.
 
     Attributes:
         system: the scene in motion.
-        name: of the load and the rod.
+        name: names of the load and the rod.
         rod: name of the rod.
         load: the load in motion.
     """
@@ -117,7 +117,7 @@ class RodDrag(Drag):
         return [ca.vertcat(force, moment), on_body]
 
     def wrenches(self, rod: str) -> list[Wrench]:
-        """The drag on a rod, base axes; none on another one."""
+        """The drag on a rod, base axes; nothing on other rods."""
         if rod != self.rod:
             return []
         base_R_world = self.system.base(rod).rotation.T
@@ -131,7 +131,7 @@ class RodDrag(Drag):
 
     @property
     def dissipated_power(self) -> Matrix:
-        """Power that the drag takes, 1×1, W: the power of its forces along the motion that the body sees."""
+        """Power that the drag dissipates, 1×1, W: the power of its forces on the motion relative to the body."""
         force, moment = self.sections.drag
         assert self.load.motion is not None, "a drag is one of motion"
         velocity, spin = map(self.sections.at_sections, (self.load.motion.velocity, self.load.motion.angular_velocity))
@@ -145,7 +145,7 @@ class BodyDrag(Drag):
 
     Attributes:
         system: the scene in motion.
-        name: of the load and the body.
+        name: names of the load and the body.
         body: the frame of the body.
         load: the load.
     """
@@ -157,7 +157,7 @@ class BodyDrag(Drag):
 
     @cached_property
     def own(self) -> Matrix | None:
-        """[Force; moment about the origin] on the body, 6×1, world axes; None of a load that does not feel motion."""
+        """[Force; moment about the origin] on the body, 6×1, world axes; None for a load without drag."""
         body = self.system.discrete.bodies[self.body.name]
         pose = self.system.frame(self.body)
         loads = BodyLoads(self.system.discrete, body, pose.position, pose.rotation, self.system.arguments.inputs)
@@ -165,7 +165,7 @@ class BodyDrag(Drag):
 
     @cached_property
     def frictions(self) -> Sequence[Matrix]:
-        """The drag on the body, 6×1; of one that rides also that on its section, about the centre of that."""
+        """The drag on the body, 6×1; for a body that rides also on its section, about the centre of the section."""
         if self.name in self.system.friction:
             return self.system.friction[self.name]
         assert self.own is not None, "a drag is there"
@@ -179,7 +179,7 @@ class BodyDrag(Drag):
         return [self.own, ca.vertcat(force, moment + ca.cross(arm, force))]
 
     def wrenches(self, rod: str) -> list[Wrench]:
-        """The drag on a rod, base axes: on the section that the body rides on; none on another one."""
+        """The drag on a rod, base axes: on the section that the body rides on; nothing on other rods."""
         riding = self.system.riding.get(self.body.name)
         if riding is None or riding.rod != rod:
             return []
@@ -194,7 +194,7 @@ class BodyDrag(Drag):
 
     @property
     def dissipated_power(self) -> Matrix:
-        """Power that the drag takes, 1×1, W."""
+        """Power that the drag dissipates, 1×1, W."""
         motion = self.system.body_motions[self.body.name]
         return -ca.dot(self.on_body, ca.vertcat(motion.angular_velocity, motion.velocity))
 

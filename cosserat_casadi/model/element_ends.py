@@ -1,4 +1,4 @@
-"""Where the elements of rods end: where a load, an actuator, a body, a disk or a carried rod makes a jump.
+"""Ends of the elements of rods: a load, an actuator, a body, a disk or a carried rod makes a jump there.
 
 A parameter may move such a place. The elements that end there move with it: their number, modes and nodes stay those
 of the scene's own numbers, so that the order of the places along a rod must stay as well.
@@ -22,13 +22,13 @@ from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.rod.discretisation import Discretisation
 
 NARROWEST = 1e-6
-"""Width of an element relative to the rod below which its ends are taken to meet."""
+"""Length of an element, relative to the rod, below which its two ends count as one."""
 
 
 CLOSEST = 1e-13
 """Distance of two places relative to the rod below which rounding makes the equations between them singular.
 
-At 1e-12 a rod with a load at each is still solved to its tolerance.
+At 1e-12 a rod with a load at each of two places is still solved to its tolerance.
 """
 
 
@@ -39,16 +39,16 @@ def places_on(scene: scenes.Scene, rod: str) -> list[Scalar]:
         member = EFFECTS[record.kind]
         if member.acts_on(record, rod):
             places.extend(member.breaks(record))
-    # The wrench of a carried rod is a point load on its carrier: the internal wrench jumps there.
+    # The wrench of a carried rod is a point load on its carrier, at which the internal wrench jumps.
     places.extend(carried.base.at for carried in scene.rods if carried.base.rod == rod)
-    # So is that of a body.
+    # The wrench of a body is a point load too.
     places.extend(joint.at for joint in scene.joints if joint.rod == rod and not joint.holds_base)
     places.extend(at for row in scene.disks if row.rod == rod for at in row.places)
     return places
 
 
 def element_ends(scene: scenes.Scene, rod: str) -> tuple[float, ...]:
-    """Abscissae at which a rod is cut: its ends, the places on it, and where contact asks for elements."""
+    """Abscissae of the element ends of a rod: its ends, the places on it, and the ends that contact asks for."""
     asked_for = tuple(sorted({0.0, 1.0, *map(float, places_on(scene, rod))}))
     (record,) = [record for record in scene.rods if record.name == rod]
     return joined_ends(asked_for, layer_ends(scene, record))
@@ -59,7 +59,7 @@ def check_places(rod: str, ends: Sequence[float]) -> None:
 
     Args:
         rod: name of the rod.
-        ends: where its elements end, ascending.
+        ends: abscissae of its element ends, ascending.
 
     Raises:
         SceneError: two are closer than CLOSEST.
@@ -72,10 +72,10 @@ def check_places(rod: str, ends: Sequence[float]) -> None:
 
 
 def check_discretisation(scene: scenes.Scene, discretisation: Mapping[str, Discretisation]) -> None:
-    """Refuse a discretisation that is not one of the rods of a scene.
+    """Refuse a discretisation that does not fit the rods of a scene.
 
     Raises:
-        SceneError: a rod has no discretisation, or one of other strains or elements; all faults at once.
+        SceneError: a rod has no discretisation, or one with other strains or elements; it lists all faults.
     """
     rods = {rod.name: rod for rod in scene.rods}
     names = ", ".join(rods)
@@ -108,13 +108,13 @@ def check_discretisation(scene: scenes.Scene, discretisation: Mapping[str, Discr
 def moved_ends(
     nominal: scenes.Scene, scene: scenes.Scene, rod: str, breaks: tuple[float, ...]
 ) -> tuple[Scalar, ...] | None:
-    """Where the elements of a rod end in a scene with other numbers, or expressions; None where they have not moved.
+    """Element ends of a rod in a scene with other numbers, or expressions; None if none has moved.
 
     Args:
         nominal: the scene that the elements were made for.
         scene: the scene with other numbers.
         rod: name of the rod.
-        breaks: where its elements end in the nominal scene.
+        breaks: element ends of the rod in the nominal scene.
     """
     moved: dict[float, Scalar] = {}
     for before, after in zip(places_on(nominal, rod), places_on(scene, rod), strict=True):
@@ -127,10 +127,10 @@ def moved_ends(
 
 
 def unmovable(name: str, nominal: scenes.Scene, scene: scenes.Scene) -> Iterator[Problem]:
-    """Why a parameter cannot move its places.
+    """Problems of a parameter that cannot move places along rods.
 
     Args:
-        name: of the parameter.
+        name: name of the parameter.
         nominal: the scene with its own numbers.
         scene: the scene with symbols for the numbers of this parameter alone.
     """
@@ -155,7 +155,7 @@ class MovingEnds:
 
     Attributes:
         rod: name of the rod.
-        names: the parameters that move them.
+        names: parameters that move element ends.
         ends: p ↦ abscissae, shape (E + 1,).
     """
 
@@ -164,7 +164,7 @@ class MovingEnds:
     ends: ca.Function
 
     def faults(self, p: FloatArray) -> Iterator[Problem]:
-        """Problems of the element ends that values of the parameters give."""
+        """Problems of the element ends for values of the parameters."""
         ends = self.ends(p).full()[:, 0]
         if np.all(np.diff(ends) >= NARROWEST):
             return
@@ -176,13 +176,13 @@ class MovingEnds:
 def moving_ends(
     nominal: scenes.Scene, scene: scenes.Scene, symbol: ca.MX, names: dict[str, tuple[str, ...]]
 ) -> tuple[MovingEnds, ...]:
-    """The element ends of those rods on which parameters move any.
+    """The element ends of each rod on which parameters move some.
 
     Args:
         nominal: the scene with its own numbers.
-        scene: the scene with entries of the symbol.
+        scene: the scene with entries of the symbol as its parameters.
         symbol: p.
-        names: parameters that move places, by rods.
+        names: parameters that move places, by rod.
     """
     moving = []
     for rod, own in names.items():

@@ -29,13 +29,13 @@ from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.scene.orientations import quaternion_about
 
 MOST_CORRECTIONS = 20
-"""Corrections of a body's pose before its joints count as ones that no pose closes."""
+"""Most corrections of a body's pose: joints that are still open then count as impossible to close."""
 
 FIRST_CORRECTIONS = 4
-"""Corrections that are made in any case: gaps may grow at first."""
+"""Corrections before progress is judged: gaps may grow at first."""
 
 STALLED = 0.9
-"""Share of the largest gap that each correction after the first ones leaves where no pose closes the joints."""
+"""Ratio of successive largest gaps, after the first corrections, above which no pose is taken to close the joints."""
 
 CLOSED = 1e-12
 """Gap of a joint, without unit, up to which it counts as closed."""
@@ -58,7 +58,7 @@ class FloatingFrame:
     Attributes:
         body: the body, or None for the base of a rod.
         unit: energy that makes its balance dimensionless, J.
-        length: length ℓ that does, m.
+        length: length ℓ that makes its displacement dimensionless, m.
         start: p₀ and Q₀.
     """
 
@@ -75,7 +75,7 @@ class FloatingFrame:
 class FramePose:
     """World pose of a floating frame from its unknowns (p − p₀)/ℓ and Q − Q₀, and how it moves with them.
 
-    The quaternion is not held to norm 1, only its direction counts: an equation of the balance makes its norm one.
+    The unknown quaternion has any norm, and only its direction counts; a row of the balance makes its norm one.
 
     Attributes:
         frame: the frame.
@@ -117,12 +117,12 @@ def turn_matrix(quaternion: Matrix) -> Matrix:
 
 
 class _Seat(NamedTuple):
-    """A joint of a body whose pose is looked for.
+    """A joint of a body with a pose yet to be determined.
 
     Attributes:
-        section: what the joint holds the body to, a section or a place of another body or the world, world pose.
-        place: of the joint in the body.
-        held: directions that it holds, in the axes of both where it is closed.
+        section: world pose of the section, or the place in another body or the world, that holds the body.
+        place: pose of the joint in the body.
+        held: directions that it holds; the axes of section and place agree in a closed joint.
     """
 
     section: NumericPose
@@ -132,7 +132,7 @@ class _Seat(NamedTuple):
 
 @dataclass(frozen=True)
 class UnloadedScene:
-    """Poses of rods and bodies where nothing acts."""
+    """Poses of rods and bodies in the unloaded scene."""
 
     scene: scenes.Scene
     rods: Mapping[str, DiscreteRod]
@@ -151,7 +151,7 @@ class UnloadedScene:
         return [rod for rod in self.scene.rods if rod.base.rod is not None]
 
     def floating_base(self, rod: str) -> FrameName | None:
-        """The floating frame that a rod's base is; None where it rests in the world."""
+        """The floating frame of a rod's base; None if the base rests in the world."""
         base = self.records[rod].base
         if base.rod is None and not base.free and rod not in self.scene.jointed_bases:
             return None
@@ -178,11 +178,11 @@ class UnloadedScene:
 
     @cached_property
     def riding(self) -> dict[str, int]:
-        """Places in the scene's list of the joints of bodies that ride on a section of a rod, by body.
+        """Index, in the scene's list, of the joint of each body that rides on a section of a rod, by body.
 
-        Such a body has one joint, which leaves nothing free: its pose follows from that of the section and is no
-        unknown, and what acts on it acts on the section. A body that bears obstacles is felt by all rods, and one whose
-        velocity is given is not asked where its section goes: these float.
+        Such a body has one joint, which leaves nothing free: its pose follows from the pose of the section and is not
+        an unknown, and loads on it act on the section. Bodies with obstacles, which push all rods, and bodies with a
+        given initial velocity, which need not be the section's, float instead.
         """
         borne = {obstacle.body for obstacle in self.scene.obstacles}
         pushed = {velocity.owner for velocity in self.scene.velocities if velocity.rod is None}
@@ -207,7 +207,7 @@ class UnloadedScene:
         """World pose of a rod's base."""
         record = self.records[rod]
         for joint in self.scene.joints:
-            # The base is where the body is, but where the body is said by such bases alone.
+            # The base follows the body, unless joints at such bases are all that places the body.
             if joint.rod == rod and joint.holds_base and joint.body is not None and self._placing_joints(joint.body):
                 return _turned(self.body_frame(joint.body).start.then(place_of(joint)), joint, record)
         own = NumericPose(*base_pose(record))
@@ -218,7 +218,7 @@ class UnloadedScene:
         return self.section(carrier, record.base.at).then(own)
 
     def section(self, rod: str, at: float) -> NumericPose:
-        """World pose of a section of a rod, kept: bodies and joints ask for the same ones."""
+        """World pose of a section of a rod; it is kept, since bodies and joints use the same sections."""
         if (rod, at) not in self._sections:
             discrete_rod = self.rods[rod]
             if rod not in self._shapes:
@@ -232,9 +232,9 @@ class UnloadedScene:
         return self._sections[rod, at]
 
     def plane(self, rod: str) -> NumericPose | None:
-        """Base of a rod that never leaves its x–z plane; None where the rod or what carries it may."""
+        """World pose of the base of a rod that never leaves its x–z plane; None if the rod or its carrier may."""
         record = self.records[rod]
-        # What nothing holds may be pushed out of its plane.
+        # A free rod may be pushed out of its plane.
         if record.base.free or not stays_in_plane(self.rods[rod].properties):
             return None
         own = self.base(rod)
@@ -249,7 +249,7 @@ class UnloadedScene:
         return own
 
     def base_joint(self, rod: str) -> tuple[int, FloatArray] | None:
-        """Place in the scene's list of the joint at a rod's base, without body, and its rotation; None without one.
+        """Index in the scene's list of the joint at a rod's base, if without body, and its rotation; else None.
 
         The rotation turns the axes of the held section, the carrying one or a base in the world, into the axes
         that the axis of the joint is in, shape (3, 3).
@@ -260,7 +260,7 @@ class UnloadedScene:
         return index, np.eye(3) if self.records[rod].base.rod is not None else self.base(rod).rotation
 
     def _base_keeps_plane(self, rod: str) -> bool:
-        """Whether the joint at a base keeps its rod in the x–z plane of the base, as the body's plane is kept."""
+        """Whether the joint at a base, and the body that it may be on, keep its rod in the x–z plane of the base."""
         found = self.base_joint(rod)
         if found is not None:
             joint = self.scene.joints[found[0]]
@@ -272,12 +272,12 @@ class UnloadedScene:
         return self._stays_in_plane(joint.body, self.base(rod).rotation[:, 1])
 
     def _stays_in_plane(self, body: str, normal: FloatArray, beyond: frozenset[str] = frozenset()) -> bool:
-        """Whether joints keep a body in a plane, to the world or to other bodies that stay there.
+        """Whether joints to the world, or to other bodies that stay in a plane, keep a body in this plane.
 
         Args:
-            body: its name.
-            normal: of the plane, world axes, shape (3,).
-            beyond: bodies that it may not be kept by, since it keeps them.
+            body: name of the body.
+            normal: unit normal of the plane, world axes, shape (3,).
+            beyond: bodies that do not count as keeping it, since it keeps them.
         """
         for joint in self.scene.joints:
             ends = {place.body for place in joint.places} | ({None} if joint.body is None else set())
@@ -300,7 +300,7 @@ class UnloadedScene:
             if plane is None:
                 return False
             normals.append(plane.rotation[:, 1])
-        # Of two unit normals, the product is the sine of the angle between the planes.
+        # The norm of the cross product of two unit normals is the sine of the angle between the planes.
         sines = [np.linalg.norm(np.cross(normals[0], normal)) for normal in normals]
         return all(sine <= FLAT for sine in sines)
 
@@ -318,28 +318,28 @@ class UnloadedScene:
         seats = [self._seat(joint, body.name) for joint in placing]
         start = self._closed(seats, length)
         if start is None:
-            # What joins it to other bodies and the world does not give way, as rods do.
+            # Joints to other bodies and to the world do not give way, as rods do.
             rigid = [seat for joint, seat in zip(placing, seats, strict=True) if joint.carries is not None] or seats
             start = self._closed(rigid, length) or self._mean_pose(rigid, length)
         return FloatingFrame(body, unit, length, start)
 
     def rods_of(self, body: str) -> list[str]:
-        """The rods that joints tie a body to; all rods where there is none."""
+        """The rods to which joints tie a body; all rods if no joint does."""
         return [joint.rod for joint in self._joints_of(body) if joint.rod] or list(self.rods)
 
     def _joints_of(self, body: str) -> list[scenes.Joint]:
         return [joint for joint in self.scene.joints if body in [place.body for place in joint.places]]
 
     def units(self, rods: Sequence[str]) -> tuple[float, float]:
-        """The largest EI/ℓ, J, and length, m, of some rods; of all rods where none is named."""
+        """The largest EI/ℓ, J, and the largest length, m, of some rods, or of all rods if none is named."""
         discrete = [self.rods[name] for name in rods or self.rods]
         unit = max(rod.energy_unit for rod in discrete)
         return unit, max(rod.properties.length for rod in discrete)
 
     def _placing_joints(self, body: str) -> list[scenes.Joint]:
-        """Joints of a body that say where it is.
+        """Joints that determine the unloaded pose of a body.
 
-        Those at sections of rods that do not start on bodies, in the world, and at bodies that are placed before it.
+        These are joints at rods that do not start on bodies, in the world, and at bodies that are placed before it.
         """
         rank = self._ranks.get(body, len(self._ranks))
         placing = []
@@ -363,7 +363,7 @@ class UnloadedScene:
         at_rods = [joint for joint in self.scene.joints if joint.carries is None and joint.body is not None]
         grounded = [joint.body for joint in at_rods if not self.starts_on_body(joint.rod)]
         grounded += [joint.carries.body for joint in self.scene.joints if joint.carries and joint.body is None]
-        # Where no body is placed by others, rods that start on it are.
+        # If nothing else places a body, the rods that start on it do.
         for placed_first in (grounded, [joint.body for joint in at_rods]):
             ranks = dict.fromkeys(placed_first, 0) | ranks
             for rank in range(1, len(self.scene.bodies)):
@@ -374,7 +374,7 @@ class UnloadedScene:
         return ranks
 
     def _seat(self, joint: scenes.Joint, body: str) -> _Seat:
-        """A joint as the body sees it whose pose is looked for."""
+        """A joint from the side of the body, whose pose is to be determined."""
         held = JOINT_KINDS[joint.kind].directions(joint)
         place = place_of(joint)
         if joint.carries is None:
@@ -386,21 +386,21 @@ class UnloadedScene:
         return _Seat(self.body_frame(joint.carries.body).start.then(carried), place, held)
 
     def starts_on_body(self, rod: str) -> bool:
-        """Whether the base of a rod, or of one that carries it, is held to a body."""
+        """Whether a joint holds the base of a rod, or of a rod that carries it, to a body."""
         carrier = self.records[rod].base.rod
         if carrier is not None:
             return self.starts_on_body(carrier)
         return any(joint.rod == rod and joint.holds_base and joint.body is not None for joint in self.scene.joints)
 
     def _closed(self, seats: list[_Seat], length: float) -> NumericPose | None:
-        """Pose of a body next to a mean one in which all its joints are closed, if there is one.
+        """Pose of a body near the mean pose that closes all its joints; None if there is none.
 
-        What a joint leaves free, as the turn about its axis, is not asked to agree with the section. Newton's method
-        with the smallest change of the pose that closes the linearised joints.
+        Newton's method takes the smallest change of the pose that closes the linearised joints. Directions that a joint
+        leaves free, such as the turn about its axis, need not agree with the section.
 
         Args:
             seats: the joints of the body.
-            length: of the longest of their rods, m.
+            length: length of the longest of their rods, m.
         """
         pose = self._mean_pose(seats, length)
         before = np.inf
@@ -420,28 +420,28 @@ class UnloadedScene:
         return None
 
     def _gap(self, seat: _Seat, pose: NumericPose, length: float) -> tuple[FloatArray, FloatArray, bool]:
-        """Gap of a joint where its body has a pose, without unit.
+        """Dimensionless gap of a joint for a pose of its body.
 
         Args:
             seat: the joint.
-            pose: of the body.
-            length: length that displacements are divided by, m.
+            pose: world pose of the body.
+            length: unit of displacements, m.
 
         Returns:
             displacements along held directions and sines of turns about them, shape (k,); their derivatives by a turn
-            of the body about its origin and its displacement over the length, world axes, (k, 6); and whether the
-            axes that the joint holds point the same way.
+            of the body about its origin and by its displacement over the length, world axes, shape (k, 6); whether the
+            held axes of section and place point the same way.
         """
         section, place, held = seat
         arm = pose.rotation @ place.position
         to_section = section.rotation.T
         shift = to_section @ (pose.position + arm - section.position) / length
-        # The pose that the body wants of the section, in the axes of the section: the identity where nothing is turned.
+        # The pose of the place in the axes of the section: the identity if the joint is closed and not turned.
         turned = to_section @ pose.rotation @ place.rotation
         by_turn = [_axial(cross @ turned + turned.T @ cross) / 2.0 for cross in map(cross_matrix, np.eye(3))]
         of_position = np.hstack([to_section @ cross_matrix(-arm) / length, to_section])
         of_rotation = np.hstack([np.column_stack(by_turn) @ to_section, np.zeros((3, 3))])
-        # The sine of half a turn vanishes as well: what is held to agree has to point the same way.
+        # The sine of half a turn vanishes as well: held axes must also point the same way.
         count = held.rotations.shape[1]
         weights = count * np.eye(3) - 2.0 * held.rotations @ held.rotations.T
         rows = np.concatenate([held.positions.T @ shift, held.rotations.T @ _axial(turned - turned.T) / 2.0])
@@ -450,11 +450,11 @@ class UnloadedScene:
         return rows, derivatives, agrees
 
     def _mean_pose(self, seats: list[_Seat], length: float) -> NumericPose:
-        """Pose of a body between those in which each section alone would close its joint.
+        """Mean of the poses of a body that close each joint alone.
 
-        The rotation is the one that turns the arms of all joints, and the orientations of joints that hold one,
-        nearest to the sections in the sense of least squares: G. Wahba, *SIAM Review* 7 (1965) 409, solved by a
-        singular value decomposition.
+        The rotation brings the arms of all joints, and the orientations of joints that hold one, nearest to the
+        sections in the sense of least squares: G. Wahba, *SIAM Review* 7 (1965) 409, solved by a singular value
+        decomposition.
 
         Args:
             seats: the joints of the body.
@@ -466,7 +466,7 @@ class UnloadedScene:
         mean_point = points.mean(axis=0)
         correlation = (points - mean_point).T @ (arms - mean_arm)
         for section, place, held in seats:
-            # A joint that leaves the orientation free counts by its arm alone.
+            # A joint that leaves the orientation free contributes its arm alone.
             if held.rotations.size:
                 in_body = NumericPose(np.zeros(3), place.quaternion)
                 wanted = section.then(in_body.inverse)
@@ -480,12 +480,12 @@ class UnloadedScene:
 
 
 def _turned(closed: NumericPose, joint: scenes.Joint, rod: scenes.Rod) -> NumericPose:
-    """The base of a rod on a body, turned to where the rod says that it begins as far as the joint leaves that free.
+    """The base of a rod on a body, turned towards the rod's own orientation as far as the joint leaves it free.
 
     Args:
         closed: the base with the axes of the joint, world pose.
         joint: the joint.
-        rod: the rod; with the default orientation, the world's, it begins as the body points.
+        rod: the rod; with the default orientation, the axes of the world, its base has the axes of the joint.
     """
     kind = JOINT_KINDS[joint.kind]
     said = rod.base.tangent is not None or rod.base.quaternion != scenes.Base().quaternion
@@ -497,14 +497,14 @@ def _turned(closed: NumericPose, joint: scenes.Joint, rod: scenes.Rod) -> Numeri
         axis = np.cross(held[:, 0], held[:, 1])
         wanted = np.concatenate([wanted[:1], axis * (axis @ wanted[1:])])
     length = np.linalg.norm(wanted)
-    # Half a turn across the axis leaves no turn about it nearer than others.
+    # If the two orientations differ by half a turn across the axis, all turns about the axis are equally near.
     if held.shape[1] not in (0, 2) or length < FLAT:
         return closed
     return closed.then(NumericPose(np.zeros(3), wanted / length))
 
 
 def same_plane(first: NumericPose, second: NumericPose, length: float, *, tilted: bool = False) -> bool:
-    """Whether the x–z planes of two frames are one plane; ``tilted``: whether it holds the second frame's origin."""
+    """Whether the x–z planes of two frames coincide; ``tilted``: whether the first holds the second's origin."""
     normal = first.rotation[:, 1]
     distance = abs(float(normal @ (second.position - first.position)))
     if distance > FLAT * length:
@@ -516,5 +516,5 @@ def same_plane(first: NumericPose, second: NumericPose, length: float, *, tilted
 
 
 def _axial(matrix: FloatArray) -> FloatArray:
-    """The vector of which an antisymmetric matrix is the cross product, shape (3,)."""
+    """The vector v of an antisymmetric matrix v^, shape (3,)."""
     return np.array([matrix[2, 1], matrix[0, 2], matrix[1, 0]])

@@ -1,4 +1,4 @@
-"""Motions of frames: from the rates of a position and a quaternion to velocities, and the jets of δθ = T δQ.
+"""Motions of frames: velocities from the rates of a position and a quaternion, and the jets of δθ = T δQ.
 
 Only the direction of a quaternion counts, so that T has the norm in it: ω = T Q̇ is the angular velocity of Q / |Q|
 whatever the norm does, and ω̇ = Ṫ Q̇ + T Q̈. Docs/theory.md, section 11.
@@ -40,7 +40,7 @@ TURN_JET = _turn_jet()
 
 
 def _norm_rows() -> ca.Function:
-    """(Q, Q̇, Q̈) ↦ ½ Q d²(Q·Q)/dt², 4×1, and its derivatives with Q, Q̇ and Q̈."""
+    """(Q, Q̇, Q̈) ↦ ½ Q d²(Q·Q)/dt², 4×1, and its derivatives with respect to Q, Q̇ and Q̈."""
     symbols = [ca.SX.sym(name, 4) for name in ("quaternion", "rate", "acceleration")]
     quaternion, rate, acceleration = symbols
     rows = quaternion * (ca.dot(quaternion, acceleration) + ca.sumsqr(rate))
@@ -91,7 +91,7 @@ class FloatingFrameMotion:
         quaternion: its quaternion with its rates.
         deviation_rate: rates of its unknowns, 7×1, 1/s.
         deviation_acceleration: 7×1, 1/s².
-        norm_time: time in which the norm of the quaternion returns to one, squared, s².
+        norm_time: square of the time in which the norm of the quaternion returns to one, s².
     """
 
     frame: FloatingFrame
@@ -128,15 +128,15 @@ class FloatingFrameMotion:
     def norm_rows(self) -> Matrix:
         """Inertia of the norm of the quaternion, τ² Q (Q·Q̈ + Q̇·Q̇), 7×1.
 
-        No mechanics sees the norm. With the (Q·Q − 1) Q of the balance these rows make it return to one like a spring
-        with a mass, so that it is a coordinate like all others and not a constraint.
+        No mechanics depends on the norm. With the term (Q·Q − 1) Q of the balance these rows make it oscillate about
+        one like a mass on a spring, so that it is a coordinate like all others and not a constraint.
         """
         rows: Matrix = self.norm_time * NORM_ROWS(*self._quaternion)[0]
         return ca.vertcat(ca.DM(3, 1), rows)
 
     @cached_property
     def norm_matrices(self) -> MotionMatrices:
-        """Derivatives of :attr:`norm_rows` with the unknowns of the frame and their rates, 7×7 each."""
+        """Derivatives of :attr:`norm_rows` by the unknowns of the frame and by their two rates, 7×7 each."""
         _, *derivatives = NORM_ROWS(*self._quaternion)
         blocks = [ca.diagcat(ca.DM(3, 3), self.norm_time * block) for block in derivatives]
         return MotionMatrices(*blocks)
@@ -165,10 +165,10 @@ class BodyInertia:
 
     Attributes:
         mass: kg.
-        centre_of_mass: in body axes, shape (3,), m.
+        centre_of_mass: centre of mass in body axes, shape (3,), m.
         inertia: about the centre of mass, body axes, shape (3, 3), kg m².
         rotation: world_R_body, 3×3.
-        motion: of the body's origin.
+        motion: motion of the body's origin.
     """
 
     mass: Scalar
@@ -214,10 +214,10 @@ class BodyInertia:
 
     @cached_property
     def matrices(self) -> MotionMatrices:
-        """Derivatives of minus the virtual work of the inertia, at fixed wrench excepted, with [δθ; δr], 6×6 each.
+        """Derivatives of minus the virtual work of the inertia by [δθ; δr], without those at fixed wrench, 6×6 each.
 
-        As for the sections of a rod, see rod/motion_tangent.py: the second moments about the centre of mass are
-        E = ½ tr(J) 1 − J, and with S = R E Rᵀ and R̈ = W R the operators are P₂ = I, P₁ = −2 ω^ S, P₀ = S Wᵀ − W S.
+        See rod/motion_tangent.py, which has them for the sections of a rod: the second moments about the centre of mass
+        are E = ½ tr(J) 1 − J, and with S = R E Rᵀ and R̈ = W R the operators are P₂ = I, P₁ = −2 ω^ S, P₀ = S Wᵀ − W S.
         """
         omega = self.motion.angular_velocity
         turning = self._turning

@@ -32,14 +32,14 @@ ARGUMENT_UNITS: dict[str, str] = {
     "v": "1/s",
     "a": "1/s²",
 }
-"""Units of the arguments that have one; "inputs" stands for the units of the stacked inputs, so "parameters"."""
+"""Units of arguments; "inputs" stands for the units of the stacked inputs, "parameters" for those of the parameters."""
 
 SCALAR_ARGUMENTS = frozenset({"X", "load_factor", "load_factor_rate"})
-"""Arguments that are one number whatever the scene: functions in C take them by value."""
+"""Arguments that are one number in every scene: functions in C take them by value."""
 
 
 PARAMETERS = "p"
-"""The argument that holds the parameters of a scene."""
+"""Name of the argument that holds the parameters of a scene."""
 
 
 class Owner(Enum):
@@ -70,13 +70,13 @@ class Output:
 
 @dataclass(frozen=True)
 class Expressions:
-    """Discretisation, owner and symbols that the expressions of a function are written in.
+    """Discretisation, owner and symbols for the expressions of a function.
 
     Attributes:
         discrete: the scene.
         owner: name of the rod, the actuator, the body or the joint; empty for a function of the scene.
         symbols: the arguments by name.
-        known: equations in these arguments, which functions of all owners share.
+        known: equations in these arguments, shared by the functions of all owners.
     """
 
     discrete: DiscreteScene
@@ -90,7 +90,7 @@ class Expressions:
 
     @property
     def arguments(self) -> Arguments:
-        """Unknowns, inputs and load factor, as far as they are arguments."""
+        """Unknowns, inputs and load factor of the system; the ones that are arguments of the function."""
         motion = self._motion if "v" in self.symbols else None
         return Arguments(self.symbols["x"], self.symbols["inputs"], self.symbols.get("load_factor"), motion)
 
@@ -123,7 +123,7 @@ class Expressions:
         return known
 
     def equations(self, kind: Callable[[System], Result]) -> Result:
-        """Equations or energies of the system: functions of the same arguments have them from one place."""
+        """Equations or energies of the system, written once for all functions of these arguments."""
         if kind not in self.known:
             self.known[kind] = kind(self.system)
         known: Result = self.known[kind]
@@ -142,13 +142,13 @@ class FunctionSpec:
         name: member of the model.
         owner: family of its owners; the table has one function for each member.
         arguments: names of the arguments, without the parameters that a scene names.
-        outputs: names of its results, or a rule that gives them for one owner.
-        write: gives the expressions; None where the scene has no such function.
+        outputs: its results, or a function from a discrete scene and an owner to them.
+        write: method that returns the expressions, or None in a scene without such a function.
         kernel: name of its kernel in C; empty where it stays in Python.
-        kernel_outputs: number of the outputs that the kernel has; None for all.
-        header: sentence of the header in C, with the word ``{owner}``; empty where the kernel is the solver's alone.
-        differentiable: whether a loaded folder gives it with derivatives.
-        judges_answers: whether its kernel serves the estimate of an answer's error alone.
+        kernel_outputs: number of outputs of the kernel, the first ones; None for all.
+        header: sentence for the header in C, with ``{owner}``; empty for a kernel that only the solver calls.
+        differentiable: whether a loaded folder offers its derivatives.
+        judges_answers: whether its kernel serves only to estimate the error of an answer.
         doc: the function in one sentence.
     """
 
@@ -165,11 +165,11 @@ class FunctionSpec:
     doc: str = ""
 
     def __reduce__(self) -> tuple[Callable[..., FunctionSpec], tuple[str, str]]:
-        """How pickle and copy find the entry again: under the name of its method, which the entry has taken."""
+        """Pickle and copy find the entry by the name of the method that it has replaced."""
         return _entry_of, (self.write.__module__, self.write.__qualname__)
 
     def arguments_of(self, discrete: DiscreteScene) -> list[str]:
-        """Names of the arguments: in a scene with parameters p follows the inputs."""
+        """Names of the arguments; with parameters in the scene, p follows the inputs."""
         arguments = list(self.arguments)
         if discrete.parameters.size:
             arguments.insert(arguments.index("inputs") + 1, PARAMETERS)
@@ -177,7 +177,7 @@ class FunctionSpec:
 
     @property
     def name_in_c(self) -> str:
-        """The word in its symbols."""
+        """Name of the function in C symbols."""
         return self.kernel or self.name
 
     @property
@@ -195,7 +195,7 @@ class FunctionSpec:
         return member[owner] if owner else member
 
     def function_in_c(self, model: Any, owner: str = "") -> ca.Function:
-        """The function of one owner with the outputs that its kernel has."""
+        """The function of one owner with the outputs of its kernel."""
         function = self.function_of(model, owner)
         if self.kernel_outputs is None:
             return function
@@ -208,7 +208,7 @@ class FunctionSpec:
         """The function of one owner; None where the scene has none.
 
         Args:
-            model: whose function it is; it has the member ``discrete``.
+            model: model of the function, with a member ``discrete``.
             owner: name of the rod, the actuator, the body or the joint.
         """
         discrete: DiscreteScene = model.discrete
@@ -219,16 +219,16 @@ class FunctionSpec:
         if results is None:
             return None
         names = [output.name for output in self.outputs_of(discrete, owner)]
-        # CasADi takes no two underscores in a row, and no brackets, which disks of a row have.
+        # CasADi refuses two underscores in a row, and brackets, which names of disks in a row have.
         name = re.sub("[^A-Za-z0-9]+", "_", f"{self.name}_{owner}").strip("_") if owner else self.name
         return ca.Function(name, list(symbols.values()), list(results), arguments, names)
 
 
 def expressions_of(model: Any, arguments: tuple[str, ...], owner: str) -> Expressions:
-    """Expressions in arguments, which functions of a model share."""
+    """Expressions in some arguments, shared by the functions of a model."""
     discrete: DiscreteScene = model.discrete
     kept: dict[Any, Expressions] = model.__dict__.setdefault("_expressions", {})
-    # Coordinates alone are those of a rod.
+    # A function of q alone is written for the coordinates of one rod.
     place = (arguments, owner if "q" in arguments else "")
     if place not in kept:
         kept[place] = Expressions(discrete, owner, {name: _symbol(discrete, name, owner) for name in arguments})
@@ -273,7 +273,7 @@ def argument_size(discrete: DiscreteScene, name: str, owner: str) -> int:
 
 
 def owners(discrete: DiscreteScene, owner: Owner) -> list[str]:
-    """Names of all rods, actuators, bodies or joints; one empty name for the scene."""
+    """Names of all owners in a family: rods, actuators, bodies or joints; one empty name for the scene."""
     scene = discrete.scene
     named: dict[Owner, Sequence[Any]] = {
         Owner.ROD: scene.rods,
@@ -285,21 +285,21 @@ def owners(discrete: DiscreteScene, owner: Owner) -> list[str]:
 
 
 SHARED = "_shared"
-"""Entry of the model, in the dictionary of another one, that writes the functions of both."""
+"""Key, in the dictionary of a model, of the other model that writes the functions of both."""
 
 
 def share_functions(model: Any, kept: Any) -> None:
-    """Have a model take its functions from another one, of the same equations, which writes and keeps them."""
+    """Make a model take its functions from another model with equal equations, which writes and keeps them."""
     model.__dict__[SHARED] = kept
 
 
 def kept_with(model: Any, name: str, make: Callable[[], Result]) -> Result:
-    """A value that depends on the equations of a model alone: made once for all models that share its functions.
+    """A value that depends on the equations of a model alone, made once for all models that share its functions.
 
     Args:
         model: the model.
-        name: of the value.
-        make: makes it.
+        name: name of the value.
+        make: function that makes the value.
     """
     kept = model.__dict__.get(SHARED, model).__dict__
     if name not in kept:
@@ -310,9 +310,9 @@ def kept_with(model: Any, name: str, make: Callable[[], Result]) -> Result:
 
 @dataclass
 class NamedFunction:
-    """A member of a model that is built when it is first asked for, and kept.
+    """A member of a model that is built on first use, and kept.
 
-    Of the scene it is one function, of rods, actuators, bodies or joints a function for each, by name.
+    It is one function of the scene, or a function for each rod, actuator, body or joint, by name.
     """
 
     spec: FunctionSpec = field(init=False)
@@ -343,7 +343,7 @@ def scene_function(*outputs: Output, **options: Any) -> Callable[[Write], NamedF
 
     Args:
         outputs: names of its results.
-        options: as of :func:`owned_functions`.
+        options: keywords of :func:`owned_functions`.
     """
     return owned_functions(Owner.SCENE, outputs, **options)
 
@@ -355,7 +355,7 @@ def owned_functions(
 
     Args:
         owner: family of its owners; each member has one function.
-        outputs: what each gives, or a rule that says so for one owner.
+        outputs: results of each, or a function from a discrete scene and an owner to them.
         arguments: names of its arguments.
         options: further attributes of :class:`FunctionSpec`.
     """
@@ -364,6 +364,6 @@ def owned_functions(
 
 
 def table(model_class: type) -> list[FunctionSpec]:
-    """The functions of a class of models, in the order in which they are written."""
+    """The functions of a class of models, in the order of their methods."""
     members = [vars(base) for base in reversed(model_class.__mro__)]
     return [member.spec for names in members for member in names.values() if isinstance(member, NamedFunction)]

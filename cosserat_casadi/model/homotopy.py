@@ -1,9 +1,9 @@
-"""The way from the unloaded scene to the scene: one load factor λ around finished equations.
+"""The load path from the unloaded scene to the scene: one load factor λ, applied to finished equations.
 
 At λ = 0 nothing acts and every constraint is a limp spring; at λ = 1 the loads have grown to their values and the
 springs are rigid. A row r of a constraint, with its own unknown u, becomes λ r + (1 − λ)^p s u: the spring's
-compliance falls from one to zero. So do the rows of a floating frame, which a spring holds at its pose in the unloaded
-scene, from rigid to limp. The mechanics know nothing of λ. Docs/theory.md, section 8.
+compliance falls from one to zero. A spring holds each floating frame at its pose in the unloaded scene, and goes from
+rigid to limp. The mechanics do not depend on λ. Docs/theory.md, section 8.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from cosserat_casadi.rod.actuation import Actuation
 from cosserat_casadi.rod.wrenches import PoseWrench, RodLoad
 
 LoadFactor = Matrix | None
-"""λ, 1×1; None stands for the scene itself, λ = 1, and adds no instruction."""
+"""Load factor λ, 1×1; None stands for λ = 1, the scene itself, and adds no instruction."""
 
 
 @dataclass(frozen=True)
 class Compliance:
-    """How a block of equations yields on the way to the scene.
+    """Compliance of a block of equations along the load path.
 
     Attributes:
-        power: p of (1 − λ)^p; 3 for what holds rods that do not fit, which is far stiffer than they are.
-        scale: s, without unit; below zero where the equation falls with its unknown.
+        power: p of (1 − λ)^p; 3 for constraints that hold rods that do not fit: they are stiff early.
+        scale: s, without unit; negative if the equation falls with its unknown.
     """
 
     power: int
@@ -38,7 +38,7 @@ class Compliance:
 
 
 def smoothing_at(first: float, last: float, load_factor: LoadFactor) -> Matrix:
-    """Smoothing of a corner, 1×1: falls from ``first + last`` in the unloaded scene to ``last`` in the scene."""
+    """Smoothing of a corner, 1×1, which falls from ``first + last`` at λ = 0 to ``last`` at λ = 1."""
     return ca.DM(last) if load_factor is None else last + (1 - load_factor) * first
 
 
@@ -82,5 +82,5 @@ def column_at(columns: Matrix, load_factor: LoadFactor) -> Matrix:
 
 
 def spring(size: int, compliance: Compliance, load_factor: LoadFactor) -> Matrix | None:
-    """Derivative of the springs of some equations with their own unknowns, size×size; None at the scene itself."""
+    """Derivative of the springs of equations by their own unknowns, size×size; None for the scene itself."""
     return None if load_factor is None else compliance.at(load_factor) * ca.MX.eye(size)

@@ -1,4 +1,4 @@
-"""Ranges of the inputs: by what an input is, and by what the scene says of it."""
+"""Ranges of the inputs: by the physics of an input, and by the scene."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def limits_of(scene: scenes.Scene) -> Iterator[scenes.Bound]:
 
 
 def ends_of(pairs: scenes.Pairs) -> tuple[float | tuple[float, ...], float | tuple[float, ...]]:
-    """Lower and upper ends of a range of the scene's table: a number each for all entries, or one for each."""
+    """Lower and upper ends of a range in the scene's table: one number for all entries, or one for each entry."""
     if isinstance(pairs[0], tuple):
         lower, upper = zip(*pairs, strict=True)
         return lower, upper
@@ -48,7 +48,7 @@ def narrowed(layout: InputLayout, bounds: Iterable[scenes.Bound]) -> tuple[Float
     """
     lower, upper = physical_range(layout)
     for bound in bounds:
-        # A bound is of all entries of a vector alike.
+        # A bound holds for all entries of a vector alike.
         entries = layout.slices[bound.input]
         if bound.lower is not None:
             lower[entries] = np.maximum(lower[entries], bound.lower)
@@ -61,7 +61,7 @@ def ranges_of_inputs(scene: scenes.Scene, layout: InputLayout) -> tuple[FloatArr
     """Least and largest values of the stacked inputs by their physics and by the scene.
 
     Args:
-        scene: with the inputs.
+        scene: the scene of the inputs.
         layout: its inputs.
     """
     return narrowed(layout, limits_of(scene))

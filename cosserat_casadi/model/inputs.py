@@ -1,8 +1,8 @@
 """Numbers that stay free at run time: the model's inputs as records, their order and their values in the scene.
 
 Names, units, bounds and shapes of an input are declared once, by the record of the scene that it belongs to
-(``InputField``). Whoever needs them asks the :class:`Input`; no name is taken apart. Loads and actuators take their
-values out of the stacked inputs with :func:`input_values`.
+(``InputField``). Other modules ask the :class:`Input` for them and do not parse its name. Loads and actuators take
+their values out of the stacked inputs with :func:`input_values`.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.records import Entry
 
 HISTORY = "history"
-"""Field of the numbers of sections that a load keeps from the last point of a path."""
+"""Name of the field with a load's memory of its sections from the last point of a path."""
 
 SHORTEST = 1e-3
-"""Least value of a length as an input, relative to the scene's."""
+"""Least value of a length as an input, relative to the scene's value."""
 
 PASSED = 1e-7
-"""Units by which a value may pass a bound of its physics: ipopt relaxes bounds by 1e-8."""
+"""Amount, SI units, by which a value may pass a bound of its physics: ipopt relaxes bounds by 1e-8."""
 
 
 @dataclass(frozen=True)
@@ -44,9 +44,9 @@ class Input:
     Attributes:
         owner: name of the rod, the load or the actuator that it belongs to.
         field: its name in the table of the owner.
-        declared: what the record of the owner declares: unit, components, bounds.
+        declared: declaration by the record of the owner: unit, components, bounds.
         default: the scene's value, shape (components, k): column k holds the k-th Legendre coefficient.
-        axes: "none" of a number, else "world" or "section".
+        axes: "none" for a number, else "world" or "section".
         of_rod: whether the owner is a rod.
         upper: largest value that physics allows each entry; inf where there is none.
     """
@@ -84,7 +84,7 @@ class Input:
     def lower(self) -> float:
         """Least value that each entry may have; -inf where there is none."""
         if self.declared.positive:
-            # A rod cannot have length zero: a small share of the scene's value is the end of the range.
+            # A rod cannot have length zero: the range ends at a small share of the scene's value.
             least_default = float(self.default.min())
             return SHORTEST * least_default
         if self.declared.lower is None:
@@ -129,7 +129,7 @@ class InputLayout(StackedLayout[Input]):
         return next((span for entry, span in self if (entry.owner, entry.field, entry.of_rod) == wanted), None)
 
     def indices(self, *flags: str) -> list[int]:
-        """Indices of the inputs that are declared to be something: ``geometry``, ``nodal`` or ``nonlinear``."""
+        """Indices of the inputs with a declared property: ``geometry``, ``nodal`` or ``nonlinear``."""
         spans = [span for entry, span in self if any(getattr(entry.declared, flag) for flag in flags)]
         return [index for span in spans for index in range(span.start, span.stop)]
 
@@ -141,7 +141,7 @@ class InputLayout(StackedLayout[Input]):
 
     @cached_property
     def of_memory(self) -> npt.NDArray[np.bool_]:
-        """Which inputs are histories of loads, shape (size,)."""
+        """Whether each input belongs to the history of a load, shape (size,)."""
         flags = np.zeros(self.size, dtype=bool)
         if self.memory is not None:
             flags[self.memory] = True
@@ -149,24 +149,24 @@ class InputLayout(StackedLayout[Input]):
 
     @cached_property
     def nodal(self) -> frozenset[int]:
-        """Indices of the inputs that hold numbers of nodes."""
+        """Indices of the inputs that hold values at nodes."""
         return frozenset(self.indices("nodal"))
 
     @cached_property
     def geometry(self) -> list[int]:
-        """Indices of what the equations are not linear in and must not be zero: lengths and poses of rods."""
+        """Indices of lengths and poses of rods, in which the equations are not linear and which must not be zero."""
         return self.indices("geometry")
 
     @property
     def quaternions(self) -> list[int]:
-        """Places of the first numbers of quaternions."""
+        """Indices of the first entries of quaternions."""
         return [span.start for entry, span in self if entry.field == "base.quaternion"]
 
 
 def scene_value(record: Entry, field: str) -> Numbers:
-    """An input of a load or an actuator as the scene has it, shape (1, k) or (3, k); zero where it is left out."""
+    """Value of an input of a load or an actuator in the scene, shape (1, k) or (3, k); zero if left out."""
     value: Any = record
-    # The name of a field in an inner table has dots.
+    # A field in an inner table has dots in its name.
     for key in field.split("."):
         value = getattr(value, key, None)
     components = record.inputs[field].components
@@ -176,7 +176,7 @@ def scene_value(record: Entry, field: str) -> Numbers:
         return np.array([[float(value)]])
     if is_symbolic(value):
         return value
-    # The record of a number along the rod has its coefficients, or as loads of contact do a list of one component.
+    # A scalar along the rod is a list of its coefficients, or, in loads of contact, a list of one component.
     is_one_component = components == 1 and not isinstance(value[0], tuple)
     return coefficients((value,) if is_one_component else value)
 
@@ -240,7 +240,7 @@ def input_values(layout: InputLayout, record: scenes.LoadRecord | scenes.Actuato
 def input_value(
     layout: InputLayout, record: scenes.LoadRecord | scenes.Actuator | scenes.JointRecord, field: str, inputs: Matrix
 ) -> Matrix | None:
-    """An input of a load, an actuator or a joint; None where it is zero for good."""
+    """An input of a load, an actuator or a joint; None if it is fixed at zero."""
     entries = layout.of_load(record.name or "", field)
     default = scene_value(record, field)
     if entries is None:

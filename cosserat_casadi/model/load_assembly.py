@@ -36,7 +36,7 @@ from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, RodLoad, SeenMo
 
 @dataclass(frozen=True)
 class RodBase:
-    """Pose of a rod's base in the world, or as a body sees it.
+    """Pose of a rod's base in the world, or in the axes of a body.
 
     Attributes:
         position: 3×1, axes of the world or of the body, m.
@@ -47,7 +47,7 @@ class RodBase:
     base_R_world: Matrix
 
     def in_base_axes(self, vector: Matrix | None, *, follower: bool) -> Matrix | None:
-        """Coordinates that the mechanics want: of the base for a dead vector, of the section for a follower."""
+        """Coordinates for the mechanics: in base axes for a dead vector, in section axes for a follower."""
         if vector is None or follower:
             return vector
         return self.base_R_world @ vector
@@ -68,9 +68,9 @@ class RodLoads:
         rod: name of the rod.
         base: pose of its base.
         inputs: stacked inputs.
-        ratio: length of the rod relative to the scene's, where that is free.
-        motion: of the rod; None at rest.
-        body_pose: world pose of a body, by name; None where bodies have none: loads of obstacles on bodies are then
+        ratio: length of the rod relative to the scene's, if the length is free; else None.
+        motion: motion of the rod; None at rest.
+        body_pose: world pose of a body, by name; None if bodies have no poses: loads of obstacles on bodies are then
             left out.
     """
 
@@ -90,7 +90,7 @@ class RodLoads:
         return rod_loads
 
     def of(self, load: scenes.LoadRecord) -> list[RodLoad]:
-        """One load on the rod; empty where it does not act there."""
+        """One load on the rod; empty if it does not act on this rod."""
         member = EFFECTS[load.kind]
         if not member.acts_on(load, self.rod):
             return []
@@ -103,7 +103,7 @@ class RodLoads:
         motion = None if member.seen_from(load) is not None or kernel.moving is None else self.motion
         if not kernel.pose_free or motion is not None:
             return [self._pose_wrench(kernel, site, motion)]
-        # Free of the pose, the load is constant coefficients times profiles: it costs a rotation, not a kernel a node.
+        # A load that does not depend on poses is constant coefficients times profiles: no kernel for each node.
         given_force, given_moment = kernel.coefficients(values)
         force = self.base.in_base_axes(given_force, follower=kernel.follower)
         moment = self.base.in_base_axes(given_moment, follower=kernel.follower)
@@ -113,7 +113,7 @@ class RodLoads:
         return [*self._line_wrenches(kernel, site, force, moment), *self._on_fixed_masses(kernel, force)]
 
     def seen_in_motion(self, load: scenes.LoadRecord, motion: SeenMotion) -> PoseWrench | None:
-        """A load that a body sees in motion; None where it does not act on the rod, or does not feel motion."""
+        """A load from a body in motion; None if it does not act on the rod, or does not depend on motion."""
         member = EFFECTS[load.kind]
         if not member.acts_on(load, self.rod):
             return None
@@ -122,7 +122,7 @@ class RodLoads:
         return None if kernel.moving_by_body is None else self._pose_wrench(kernel, site, motion)
 
     def base_of(self, load: scenes.LoadRecord) -> RodBase:
-        """The base of the rod as a load sees it: in the world, or from a body."""
+        """The base of the rod in the frame of a load: the world, or the body of its obstacle."""
         seen_from = EFFECTS[load.kind].seen_from(load)
         if seen_from is None:
             return self.base
@@ -130,17 +130,17 @@ class RodLoads:
         return self.base.seen_from(self.body_pose(seen_from))
 
     def _values(self, load: scenes.LoadRecord) -> dict[str, Matrix]:
-        """Inputs of a load that all its sections share."""
+        """Inputs of a load that are common to all its sections."""
         values = input_values(self.discrete.layout, load, self.inputs)
         values.pop(EFFECTS[load.kind].nodal, None)
         return values
 
     def site(self, load: scenes.LoadRecord) -> Site:
-        """Sections of the rod that a load acts on, with the load's numbers of these sections."""
+        """Sections of the rod that a load acts on, with the inputs of the load that have a value for each section."""
         return replace(site_of(self.discrete, self.rod, load), nodal=self._nodal(load))
 
     def _nodal(self, load: scenes.LoadRecord) -> Matrix | None:
-        """Numbers of the nodes in an input of a load, h×M; None of a load without such an input."""
+        """Input of a load with values at the M nodes, h×M; None for a load without such an input."""
         entries = self.discrete.layout.of_load(load.name or "", EFFECTS[load.kind].nodal)
         if entries is None:
             return None
@@ -160,7 +160,7 @@ class RodLoads:
     def _line_wrenches(
         self, kernel: TracedLoad, site: Site, force: Matrix | None, moment: Matrix | None
     ) -> Iterator[LineWrench]:
-        """Coefficients of a force and of a moment per length, times their profiles; none where there is nothing."""
+        """Line wrenches of a force and a moment per length, coefficients times profiles; none for zero ones."""
         grid = self.discrete.rods[self.rod].grid
         nodes = grid.nodes_in(*kernel.member.span(kernel.load))
         # Profiles of force and of moment may differ: a line wrench for each.
@@ -168,7 +168,7 @@ class RodLoads:
             if coefficients is None:
                 continue
             within = kernel.member.profiles(kernel.load, site.rod, site.X, coefficients.shape[1])
-            # Zero outside the span.
+            # Profiles are zero outside the span.
             profiles = among(within, nodes, grid.size)
             if is_zero(profiles):
                 continue
@@ -177,14 +177,14 @@ class RodLoads:
             yield LineWrench(of_force, of_moment, profiles, kernel.follower)
 
     def _pose_wrench(self, kernel: TracedLoad, site: Site, motion: RodMotion | SeenMotion | None) -> PoseWrench:
-        """A load that depends on the pose of its sections or on their motion: its kernel, evaluated at each section."""
+        """A load that depends on the pose or the motion of its sections: its kernel, evaluated at each section."""
         at = kernel.member.abscissa(kernel.load)
         values = self._values(kernel.load)
         section_kernel = kernel.kernel
         if motion is not None:
             assert kernel.moving is not None
             section_kernel = kernel.moving
-        # A load per length of a rod whose length is free acts on that length; a load at a point does not.
+        # A load per length scales with a free length of its rod; a load at a point does not.
         scale: Matrix | float = self.ratio if at is None and self.ratio is not None else 1.0
         base = self.base_of(kernel.load)
         return PoseWrench(
@@ -204,7 +204,7 @@ class RodLoads:
 
 
 def site_of(discrete: DiscreteScene, rod: str, load: scenes.LoadRecord) -> Site:
-    """Sections of a rod that a load acts on: one section, sections at the nodes of its span, or closer ones."""
+    """Sections of a rod that a load acts on: one section, the nodes of its span, or closer sections."""
     discrete_rod = discrete.rods[rod]
     grid = discrete_rod.grid
     member = EFFECTS[load.kind]
@@ -215,7 +215,7 @@ def site_of(discrete: DiscreteScene, rod: str, load: scenes.LoadRecord) -> Site:
     else:
         nodes = grid.nodes_in(*member.span(load)) if at is None else np.array([grid.node_at(at)])
         X, interpolation = grid.nodes_at(nodes), np.eye(grid.size)[nodes]
-    # A function: few loads ask for the unloaded poses, which take a walk along all carriers.
+    # A function, since few loads ask for the unloaded poses, which need those of all carriers.
     poses = partial(unloaded_poses, discrete, rod, interpolation)
     return Site(discrete_rod.properties, X, poses)
 
@@ -229,7 +229,7 @@ def unloaded_poses(discrete: DiscreteScene, rod: str, interpolation: FloatArray)
         interpolation: matrix from values at the M nodes to those at the k sections, shape (k, M).
 
     Raises:
-        SceneError: parameters move what carries the rod.
+        SceneError: parameters move the carrier of the rod.
     """
     discrete_rod = discrete.rods[rod]
     base = _unloaded_base(discrete, rod)
@@ -250,10 +250,10 @@ def unloaded_poses(discrete: DiscreteScene, rod: str, interpolation: FloatArray)
 
 
 def _unloaded_base(discrete: DiscreteScene, rod: str) -> NumericPose | Pose:
-    """World pose of the base of an unloaded rod: an expression where parameters move it.
+    """World pose of the base of an unloaded rod: an expression if parameters move it.
 
     Raises:
-        SceneError: parameters move what carries the rod.
+        SceneError: parameters move the carrier of the rod.
     """
     if discrete.carrier_moves(rod):
         problem = "is bound to where the unloaded rod was, whose carrier parameters move"
@@ -261,7 +261,7 @@ def _unloaded_base(discrete: DiscreteScene, rod: str) -> NumericPose | Pose:
         raise SceneError(Problem(f"a load on {rod!r}", problem, remedy))
     record = discrete.records[rod]
     written = written_pose(*written_base_pose(record))
-    # What carries the rod is where the scene's own numbers put it.
+    # The carrier of the rod has its pose by the scene's own numbers.
     unloaded = (discrete.nominal if discrete.parameters.size else discrete).own_unloaded
     if isinstance(written, NumericPose):
         return unloaded.base(rod)
@@ -271,23 +271,23 @@ def _unloaded_base(discrete: DiscreteScene, rod: str) -> NumericPose | Pose:
 
 
 def _constant(field: Matrix) -> Numbers:
-    """Values of a constant expression; an expression of parameters as it is."""
+    """Numbers of a constant expression; an expression of parameters is returned unchanged."""
     if is_symbolic(field) and ca.symvar(field):
         return field
     return ca.evalf(ca.densify(field)).full()
 
 
 def nonlinear_inputs(discrete: DiscreteScene) -> list[int]:
-    """Indices of the inputs that equations need not be linear in: of loads that depend on poses, and declared so."""
+    """Indices of the inputs in which equations may be nonlinear: declared so, or of loads that depend on poses."""
     layout = discrete.layout
     indices = layout.indices("nonlinear")
-    # What depends on a pose does so whatever its numbers are.
+    # A load depends on poses or does not, whatever its numbers are.
     discrete = discrete.nominal
     for load in discrete.loads:
         free = [span for entry, span in layout if entry.owner == load.name and not entry.of_rod]
         if not free:
             continue
-        # Ones, since an input that is zero in the scene may be given another value.
+        # Ones, since an input that is zero in the scene may get another value.
         values = {field: ca.DM.ones(*scene_value(load, field).shape) for field in load.inputs}
         if all(kernel.pose_free for kernel in kernels_of(discrete, load, values)):
             continue
@@ -304,20 +304,20 @@ def kernels_of(discrete: DiscreteScene, load: scenes.LoadRecord, values: Mapping
         if member.acts_on(load, rod):
             site = site_of(discrete, rod, load)
             data_sizes.append(member.data(load, site).shape[0])
-    # A body has no data that differ from section to section.
+    # Data differ from section to section: a body has none.
     data_sizes += [0 for body in discrete.scene.bodies if member.on_body(load, body) is not None]
     return [traced(member, load, values, size) for size in data_sizes]
 
 
 LOOKED_AT = np.linspace(0.0, 1.0, 201)
-"""Abscissae of the sections that a load is held against."""
+"""Abscissae of the unloaded sections at which loads are checked."""
 
 
 def check_loads(discrete: DiscreteScene) -> None:
     """Refuse a scene whose loads cannot act on its unloaded rods.
 
     Raises:
-        SceneError: with the faults of all loads.
+        SceneError: a load cannot act; it lists the faults of all loads.
     """
     problems: list[Problem] = []
     for load in discrete.loads:

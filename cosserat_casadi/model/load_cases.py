@@ -26,7 +26,7 @@ from cosserat_casadi.scene.number_table import finite_number
 
 
 def column_indices(layout: InputLayout) -> dict[str, int]:
-    """Index of each column in the stacked inputs."""
+    """Index in the stacked inputs of each column, by its name."""
     indices = {}
     for name, entries, default in zip(layout.names, layout.slices.values(), layout.defaults, strict=True):
         for k, suffix in enumerate(column_suffixes(*default.shape)):
@@ -39,8 +39,8 @@ class CaseLayout:
     """Layout of a load case: the inputs of a scene, and the parameters behind them.
 
     Attributes:
-        inputs: of the scene.
-        parameters: of the scene; often none.
+        inputs: inputs of the scene.
+        parameters: parameters of the scene; often none.
     """
 
     inputs: InputLayout
@@ -74,10 +74,10 @@ class CaseLayout:
         return {**self.inputs.unpack(inputs), **self.parameters.unpack(parameters)}
 
     def pack(self, values: Mapping[str, npt.ArrayLike]) -> FloatArray:
-        """The case of values by name; those not named keep the scene's.
+        """The case with values by name; other inputs and parameters keep the scene's values.
 
         Raises:
-            SceneError: a value is refused; a name that is neither input nor parameter is called no input.
+            SceneError: a value is refused, or a name is neither an input nor a parameter.
         """
         parameters = {name: value for name, value in values.items() if name in self.parameters.names}
         inputs = {name: value for name, value in values.items() if name not in parameters}
@@ -96,13 +96,13 @@ def case_layout(scene: scenes.Scene) -> CaseLayout:
 
 @dataclass(frozen=True)
 class AskedRange:
-    """A range as options ask for it: ``column=low:high``, or ``column=low:high:count``.
+    """A range from an option, ``column=low:high`` or ``column=low:high:count``.
 
     Attributes:
         column: an input or a parameter, such as ``push.force.x``.
         low: lower end, SI units.
         high: upper end.
-        count: values between the ends, both among them; None where the text has none.
+        count: number of values, with both ends; None if the text has none.
     """
 
     column: str
@@ -112,10 +112,10 @@ class AskedRange:
 
 
 def read_range(text: str) -> AskedRange:
-    """The range that a text asks for.
+    """The range in a text.
 
     Raises:
-        SceneError: it is no range.
+        SceneError: the text is not a range.
     """
     name, _, numbers = text.partition("=")
     first, _, rest = numbers.partition(":")
@@ -132,11 +132,11 @@ def read_range(text: str) -> AskedRange:
 
 
 def read_ranges(texts: Sequence[str], fault: Callable[[str, AskedRange], Problem | None]) -> dict[str, AskedRange]:
-    """The ranges that texts ask for, by column.
+    """The ranges in texts, by column.
 
     Args:
-        texts: of the ranges.
-        fault: of a text and its range: why that is refused, None where it is not.
+        texts: one text for each range.
+        fault: function from a text and its range to the reason to refuse the range, or None.
 
     Raises:
         SceneError: with every fault.

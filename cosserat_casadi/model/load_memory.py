@@ -15,7 +15,7 @@ from cosserat_casadi.scene.load_records import LoadRecord
 
 
 def rubbing_at_nodes(system: System) -> list[Rubbing]:
-    """How each load that remembers rubs at the M nodes of its rod: h×M and 1×M as it sees them, 3×M in world axes."""
+    """Memory h×M, slip 1×M and friction 3×M, world axes, at the nodes of the rod of each load with memory."""
     found = []
     for load in remembering(system.discrete.loads):
         body = EFFECTS[load.kind].seen_from(load)
@@ -36,7 +36,7 @@ def rubbing_at_nodes(system: System) -> list[Rubbing]:
 
 
 def _kernel(load: LoadRecord, sizes: Sequence[int]) -> ca.Function:
-    """(position, rotation, data, and in motion velocity and angular velocity) of a section ↦ how it rubs."""
+    """(position, rotation, data, in motion velocity and angular velocity) of a section ↦ memory, slip, friction."""
     names = ("position", "rotation", "data", "velocity", "angular_velocity")
     position, rotation, data, *rates = (ca.SX.sym(name, size) for name, size in zip(names, sizes, strict=False))
     section = Section(position, ca.reshape(rotation, 3, 3), data, *rates)

@@ -17,7 +17,7 @@ from cosserat_casadi.model.registry import EFFECTS
 
 def loads_have_potential(discrete: DiscreteScene, inputs: FloatArray) -> bool:
     """Whether all loads of a scene have a potential at these inputs."""
-    # What rubs remembers the way that it came.
+    # Friction depends on the path, so it has no potential.
     if discrete.layout.memory is not None:
         return False
     values = load_values(discrete.scene, discrete.layout, inputs)
@@ -36,7 +36,7 @@ def loads_have_potential(discrete: DiscreteScene, inputs: FloatArray) -> bool:
 def _has_potential_on_rod(
     discrete: DiscreteScene, rod: str, load: scenes.LoadRecord, values: Mapping[str, FloatArray]
 ) -> bool:
-    """Whether a load has a potential on a rod, be it that it does not act there."""
+    """Whether a load has a potential on a rod, or does not act on it."""
     if not EFFECTS[load.kind].acts_on(load, rod):
         return True
     member = EFFECTS[load.kind]
@@ -48,10 +48,10 @@ def _has_potential_on_rod(
 
 
 def is_dead_force(discrete: DiscreteScene, load: scenes.LoadRecord) -> bool:
-    """Whether a load is a force of fixed direction and no moment, whatever its inputs: it has the energy −Σ f·r."""
-    # Ones, since what the inputs may change need not stay zero; a moment that they may not change stores nothing.
+    """Whether a load is, for all inputs, a force of fixed direction without moment, with the energy −Σ f·r."""
+    # Ones, since inputs that are zero may change; a moment that no input changes stores no entries if it is zero.
     values = input_values(discrete.layout, load, ca.DM.ones(discrete.layout.size, 1))
-    # What depends on rates may be nothing at rest, and do work in motion.
+    # A load that depends on rates may be zero at rest and do work in motion.
     return all(
         kernel.pose_free and not kernel.follower and kernel.moving is None and kernel.coefficients(values)[1] is None
         for kernel in kernels_of(discrete, load, values)

@@ -1,8 +1,8 @@
 """Loops of bodies in a plane, whose joints hold each direction across it once.
 
 Hinges about one normal, slides across it and clamps keep bodies in a plane. Where such joints close a loop, with each
-other or with planar rods of the same plane, the last joint would hold a body across the plane once more: it holds
-its body in the plane alone.
+other or with planar rods of the same plane, the last joint would hold a body across the plane a second time: it is made
+to hold its body in the plane alone.
 """
 
 from __future__ import annotations

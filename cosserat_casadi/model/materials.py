@@ -41,7 +41,7 @@ SMALLEST_BENDING = 1e-9
 
 @dataclass(frozen=True)
 class LawOfRod:
-    """The rod that a law of a material is of.
+    """The rod of a material law.
 
     Attributes:
         rod: the record of the rod, whose numbers may be expressions of parameters.
@@ -57,7 +57,7 @@ class LawOfRod:
         return self.rod.admitted
 
     def columns(self, numbers: Sequence[Scalar], fields: Sequence[Callable[[Numbers], Numbers]] = ()) -> Field:
-        """Data of a density: numbers that are the same all along the rod, then fields, shape (k, d)."""
+        """Data of an energy density: numbers that are constant along the rod, then fields, shape (k, d)."""
 
         def data(X: Numbers) -> Numbers:
             count = X.shape[0]
@@ -73,7 +73,7 @@ class LawOfRod:
         """Stiffness of one strain along the rod."""
 
         def stiffness(X: Numbers) -> Numbers:
-            # One row may stand for all abscissae.
+            # A field may have one row for all abscissae.
             return repeated(column(self.hooke(X), component), X.shape[0])
 
         return stiffness
@@ -213,7 +213,7 @@ def _curve(points: Sequence[Sequence[float]]) -> HermiteCurve:
 
 
 def _size_of_bending(change: Matrix, bent: Sequence[int], smallest: float) -> Matrix:
-    """Size of the change of curvature; ``smallest`` keeps its derivatives finite at none."""
+    """Norm of the change of curvature; ``smallest`` keeps its derivatives finite at zero."""
     squares = _sum([change[component] ** 2 for component in bent])
     return ca.sqrt(squares + smallest**2)
 
@@ -241,7 +241,7 @@ class SuperelasticLaw(Law[records.Superelastic]):
 
         def density(change: Matrix, data: Matrix) -> Matrix:
             begin, end, plateau, beyond, radius, stiffness = ca.vertsplit(data)
-            # Corners lie off zero: the root is not evaluated near it.
+            # The corners are away from zero curvature: the root is not needed near it.
             first_rounded = ROUNDED * ca.fmin(begin, end - begin)
             second_rounded = ROUNDED * (end - begin)
             # Strain of the outermost fibre; never below the first corner, so that its root has derivatives.
@@ -271,14 +271,14 @@ class RubberLaw(Law[RecordType], ABC):
 
     @abstractmethod
     def coefficients(self, material: RecordType) -> list[Scalar]:
-        """Numbers of the law, the small-strain modulus of the law as it is written last."""
+        """Coefficients of the law, and last the small-strain Young's modulus that follows from them."""
 
     @abstractmethod
     def energy(self, stretch: Matrix, coefficients: Matrix) -> Matrix:
-        """W of a fibre, J/m³, for its stretch λ: the material keeps its volume, and is free across."""
+        """Energy density W of a fibre, J/m³, at its stretch λ: its volume is constant, its lateral stress zero."""
 
     def beyond_hooke(self, material: RecordType, of_rod: LawOfRod) -> EnergyBeyondHooke | None:
-        """∫ W(λ) − E ε²/2 dA, with the strain ε = λ − 1 of each fibre."""
+        """Energy ∫ (W(λ) − E ε²/2) dA of the section, J/m, with the strain ε = λ − 1 of each fibre."""
         stretched = [c for c in FIBRE_STRAINS if c in of_rod.admitted]
         if not stretched:
             return None
@@ -306,7 +306,7 @@ class RubberLaw(Law[RecordType], ABC):
         def density(change: Matrix, data: Matrix) -> Matrix:
             modulus = data[0]
             law = data[1 : len(numbers)]
-            # Young's modulus is the size of the law, and its coefficients are the shape.
+            # Young's modulus scales the law, and the coefficients give its shape.
             scale = modulus / law[-1]
             energies = []
             for strain, area in zip(*fibres(change, data), strict=True):
@@ -330,7 +330,7 @@ class NeoHookeanLaw(RubberLaw[records.NeoHookean]):
     record = records.NeoHookean
 
     def coefficients(self, material: records.NeoHookean) -> list[Scalar]:
-        """E alone."""
+        """Coefficient of the law, Young's modulus E, which is the modulus at small strain too."""
         return [material.youngs_modulus]
 
     def energy(self, stretch: Matrix, coefficients: Matrix) -> Matrix:
@@ -346,11 +346,11 @@ class MooneyRivlinLaw(RubberLaw[records.MooneyRivlin]):
     record = records.MooneyRivlin
 
     def coefficients(self, material: records.MooneyRivlin) -> list[Scalar]:
-        """c10, c01 and 6 (c10 + c01)."""
+        """Coefficients c10 and c01, and the small-strain modulus 6 (c10 + c01)."""
         return [material.c10, material.c01, 6 * (material.c10 + material.c01)]
 
     def energy(self, stretch: Matrix, coefficients: Matrix) -> Matrix:
-        """The sum over both invariants."""
+        """Energy of a fibre per volume, a sum over both invariants, 1×1, J/m³."""
         second = 2 * stretch + 1 / stretch**2 - 3
         return coefficients[0] * _first_invariant(stretch) + coefficients[1] * second
 
@@ -363,11 +363,11 @@ class YeohLaw(RubberLaw[records.Yeoh]):
     record = records.Yeoh
 
     def coefficients(self, material: records.Yeoh) -> list[Scalar]:
-        """c1, c2, c3 and 6 c1."""
+        """Coefficients c1, c2, c3, and the small-strain modulus 6 c1."""
         return [material.c1, material.c2, material.c3, 6 * material.c1]
 
     def energy(self, stretch: Matrix, coefficients: Matrix) -> Matrix:
-        """A polynomial of the first invariant."""
+        """Energy of a fibre per volume, a polynomial of the first invariant, 1×1, J/m³."""
         invariant = _first_invariant(stretch)
         return invariant * (coefficients[0] + invariant * (coefficients[1] + invariant * coefficients[2]))
 
@@ -380,12 +380,12 @@ class OgdenLaw(RubberLaw[records.Ogden]):
     record = records.Ogden
 
     def coefficients(self, material: records.Ogden) -> list[Scalar]:
-        """The pairs of μ and α, and 3/2 Σ μ α."""
+        """Coefficients μ and α of each pair, and the small-strain modulus 3/2 Σ μ α."""
         pairs = [number for pair in material.ogden for number in pair]
         return [*pairs, 1.5 * sum(modulus * exponent for modulus, exponent in material.ogden)]
 
     def energy(self, stretch: Matrix, coefficients: Matrix) -> Matrix:
-        """The sum over the pairs."""
+        """Energy of a fibre per volume, a sum over the pairs, 1×1, J/m³."""
         energies = []
         for pair in range((coefficients.shape[0] - 1) // 2):
             modulus = coefficients[2 * pair]
@@ -396,12 +396,12 @@ class OgdenLaw(RubberLaw[records.Ogden]):
 
 
 def _first_invariant(stretch: Matrix) -> Matrix:
-    """I₁ − 3 of a fibre that keeps its volume."""
+    """Invariant I₁ − 3 of a fibre of constant volume."""
     return stretch**2 + 2 / stretch - 3
 
 
 def _refuse_unless_round(rod: scenes.Rod, key: str) -> str:
-    """The key of the radius of a round section.
+    """Return the key of the radius of a round section.
 
     Raises:
         SceneError: the section is not round.

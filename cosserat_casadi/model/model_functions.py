@@ -1,6 +1,6 @@
-"""The named functions of a model: one method each, which is all there is of a function.
+"""The named functions of a model: each is defined by one method and nothing else.
 
-Every method gives the expressions of its results; the decorator says the rest. See model/function_table.py.
+Every method returns the expressions of its results; its decorator declares the rest. See model/function_table.py.
 All functions are exact for the discrete model and can be differentiated again.
 """
 
@@ -42,7 +42,7 @@ from cosserat_casadi.scene.constraint_records import AxisJoint
 RESOLVED_TURN = 2.0
 """Turn of an interval between nodes, rad, beyond which no polynomial through the nodes follows the rod.
 
-Interpolation at Chebyshev nodes converges from π nodes a wave on, and the Magnus series up to a turn of π.
+Interpolation at Chebyshev nodes converges with more than π nodes per wave, the Magnus series up to a turn of π.
 """
 
 RESOLVED_NORM = 1e-2
@@ -52,13 +52,13 @@ PATH = ("x", "inputs", "load_factor")
 """Arguments of the functions on the way from the unloaded scene, load factor 0, to the scene, 1."""
 
 CORRECTED = ("x", "correction", "missing", "inputs")
-"""Arguments of the functions that judge an answer x by modes and intervals that it lacks."""
+"""Arguments of the functions that estimate the error of an answer x by the modes and intervals that it lacks."""
 
 POSE = (Output("position", "m"), Output("quaternion"), Output("rotation"))
 
 
 def _pose_derivatives(discrete: DiscreteScene, _: str) -> tuple[Output, ...]:
-    """Derivatives of a pose with all that it depends on: with parameters in a scene that names some."""
+    """Derivatives of a pose with respect to unknowns and inputs, and to parameters in a scene with some."""
     derivatives = (Output("d_pose_d_x", derivative_by="x"), Output("d_pose_d_inputs", derivative_by="inputs"))
     if discrete.parameters.size:
         derivatives += (Output("d_pose_d_parameters", derivative_by=PARAMETERS),)
@@ -100,7 +100,7 @@ class ModelFunctions:
 
     @scene_function(Output("jacobian"), Output("residual"))
     def jacobian(self, written: Expressions) -> list[Matrix]:
-        """(x, inputs) ↦ (jacobian, residual): the order that a rootfinder's ``jacobian_function`` has."""
+        """(x, inputs) ↦ (jacobian, residual), in the order of a CasADi rootfinder's ``jacobian_function``."""
         equations = written.equations(SceneEquations)
         return [equations.jacobian, equations.residual]
 
@@ -133,7 +133,7 @@ class ModelFunctions:
         """(x, inputs, load_factor, inputs_rate, load_factor_rate) ↦ rate of the residual at fixed x."""
         moving = ca.vertcat(written["inputs"], written["load_factor"])
         speed = ca.vertcat(written["inputs_rate"], written["load_factor_rate"])
-        # One symbol for all that moves, so that one derivative in one direction is taken.
+        # One symbol for inputs and load factor, so that one directional derivative is taken.
         joined = ca.MX.sym("inputs_and_load_factor", moving.shape[0])
         arguments = Arguments(written["x"], joined[:-1], joined[-1])
         equations = SceneEquations(System(written.discrete, arguments))
@@ -149,42 +149,42 @@ class ModelFunctions:
 
     @scene_function(Output("resolution_index"), kernel="resolution_index")
     def resolution_index(self, written: Expressions) -> list[Matrix]:
-        """(x, inputs) ↦ a number beyond 1 where the nodes are too few to resolve the rod, whatever its residual.
+        """(x, inputs) ↦ resolution index: above 1 the nodes are too few to resolve the rod, whatever its residual.
 
-        Where rods are deeper inside obstacles than their widths it is their depth in widths, if that is more.
+        It is at least the depth of rods in smooth obstacles over the width, and so above 1 for rods that lie too deep.
         """
         return [resolution_index(written)]
 
     @scene_function(Output("strain_margins"), kernel="strain_margins")
     def strain_margins(self, written: Expressions) -> list[Matrix] | None:
-        """(x, inputs) ↦ how far strains are from what a rod cannot be: a number for each thing that has an end.
+        """(x, inputs) ↦ margins to states that no rod can be in, one for each path, joint, law and actuator with one.
 
-        For each tendon whose path can change the length per length of the rod that it has left where it has least: at
-        zero the rod has pressed it to nothing. Then for each joint or support of rods in a plane, where inputs or
-        parameters may take it out of the plane. Then for each rod whose material is not linear, and for each chamber
-        whose area grows, how far it is from where the law ends. None for a scene without any such thing.
+        The margin of a tendon is the least length of its path per length of the rod: at zero the rod has pressed it to
+        nothing. Margins of joints and supports of rods in a plane follow, which inputs or parameters may take out of
+        the plane; then of each rod with a nonlinear material and of each chamber with a growing area, to the end of the
+        law. None for a scene without any such margin.
         """
         margins = strain_margins(written.system)
         return [ca.vertcat(*margins.values())] if margins else None
 
     @scene_function(Output("depth"))
     def contact_depth(self, written: Expressions) -> list[Matrix] | None:
-        """(x, inputs) ↦ how deep nodes and bodies are inside obstacles, in widths; None without smooth contact."""
+        """(x, inputs) ↦ depth of nodes and bodies in obstacles, in widths; None without smooth contact."""
         depths = contact_depths(written.system)
         return [ca.mmax(ca.vertcat(0, *depths))] if depths else None
 
     @scene_function(Output("apart"))
     def sections_apart(self, written: Expressions) -> list[Matrix] | None:
-        """(x, inputs) ↦ whether sections at which thin layers are summed are too far apart; None where none can be."""
+        """(x, inputs) ↦ whether sections that sum thin layers are too far apart, 1 or 0; None if none can be."""
         apart = sections_lie_apart(written.system)
         return None if apart is None else [apart]
 
     @scene_function(Output("history"), Output("slips"), Output("friction", "N/m"))
     def memory(self, written: Expressions) -> list[Matrix] | None:
-        """(x, inputs) ↦ inputs ``history`` at the next point of a path, stacked, slip and friction at nodes.
+        """(x, inputs) ↦ inputs ``history`` for the next point of a path, stacked; slip and friction at nodes.
 
-        Of each load that remembers, then of the sections of the first rod of each pair, there N for N/m, side by side,
-        1×… and 3×…; None of a model without memory.
+        Slip, 1×…, and friction, 3×…, stand side by side for the nodes of each load with memory, N/m, then for the
+        sections of the first rod of each pair, N. None for a model without memory.
         """
         if written.discrete.layout.memory is None:
             return None
@@ -201,43 +201,43 @@ class ModelFunctions:
     def contact_sections(self, written: Expressions) -> list[Matrix] | None:
         """(x, inputs) ↦ positions of the sections that push each other, 3×…; None without contact of rods.
 
-        Of both rods of each pair, side by side, and of a rod and itself twice.
+        Sections of both rods of each pair stand side by side; a rod that touches itself appears twice.
         """
         positions = [side.at_sections for terms in written.system.pairs for side in (terms.sides[0], terms.sides[-1])]
         return [ca.horzcat(*positions)] if positions else None
 
     @scene_function(Output("positions", "m"), kernel="places")
     def places(self, written: Expressions) -> list[Matrix] | None:
-        """(x, inputs) ↦ positions of what may pass through something thin, 3×…, as model/thin.py; None without such."""
+        """(x, inputs) ↦ positions of points that could pass a thin obstacle or rod, 3×… (model/thin.py), or None."""
         positions = places(written.system)
         return None if positions is None else [positions]
 
     @scene_function(Output("balance"), arguments=CORRECTED, kernel="richer_balance", judges_answers=True)
     def richer_balance(self, written: Expressions) -> list[Matrix]:
-        """(x, correction, missing, inputs) ↦ the balance with modes and intervals added at a corrected answer.
+        """(x, correction, missing, inputs) ↦ residual of the richer model at a corrected answer, as steps.
 
         It stacks, at x + correction and the missing coordinates: elastic steps of the unknowns and of the coordinates
-        of the missing modes, the residual in the unknowns, and the watched poses and lengths, as the next function
-        gives them. See docs/theory.md, section 10.
+        of the missing modes, the residual in the unknowns, and the watched poses and lengths in the form of the
+        function ``watched``. See docs/theory.md, section 10.
         """
         richer = written.discrete.richer
         corrected = richer.joined(written["x"] + written["correction"], written["missing"])
         system = System(richer.discrete, Arguments(corrected, written["inputs"]))
         residual, lacking = richer.split(SceneEquations(system).residual)
-        # By which elasticity alone would take up the lacking balance.
+        # Steps by which elasticity alone would cancel the residual in the missing coordinates.
         steps = richer.split(richer.elastic_step(lacking, system.shapes))
         poses = watched(system).column
         apart = sections_lie_apart(written.system)
         if apart is not None:
-            # An error that does not show is not known.
+            # The error is unknown if the sections do not show it.
             poses = poses + ca.if_else(apart, ca.inf, 0.0)
         return [ca.densify(ca.vertcat(*steps, residual, poses))]
 
     @scene_function(Output("poses"), kernel="watched", judges_answers=True)
     def watched(self, written: Expressions) -> list[Matrix]:
-        """(x, inputs) ↦ what must be right to the tolerance: positions over lengths, quaternions, relative lengths.
+        """(x, inputs) ↦ watched positions over lengths, quaternions and relative lengths, which the tolerance bounds.
 
-        Of sections and bodies, and of cables, in one column; see model/watched.py.
+        Poses are of sections and bodies, lengths of cables, in one column; see model/watched.py.
         """
         return [watched(written.system).column]
 
@@ -254,7 +254,7 @@ class ModelFunctions:
 
         Report (2.19) with the base pose free: forces in N, moments in N m about the base, world frame; generalised
         forces in units of EI/ℓ. Wrenches of constraints are unknowns of the scene, not loads, and are left out; so is
-        what obstacles on bodies press with, which hangs on the poses of these.
+        the push of obstacles on bodies, which depends on the poses of the bodies.
         """
         return _inverse_geometric_model(written)
 
@@ -281,9 +281,9 @@ class ModelFunctions:
         header="Derivatives of position and quaternion of the tip of rod {owner}, stacked.",
     )
     def tip_jacobian(self, written: Expressions) -> list[Matrix]:
-        """(x, inputs) ↦ derivatives of the tip's position and quaternion, stacked 7×…, with x and with inputs.
+        """(x, inputs) ↦ derivatives of the tip's position and quaternion, stacked 7×…, by x and by inputs.
 
-        In a scene with parameters (x, inputs, p), and with p too.
+        In a scene with parameters the arguments are (x, inputs, p), and derivatives by p follow.
         """
         return _section_derivatives(written, written.owner, -1)
 
@@ -296,11 +296,11 @@ class ModelFunctions:
         differentiable=True,
     )
     def shape(self, written: Expressions) -> list[Matrix]:
-        """(x, inputs, X) ↦ (position, quaternion) at any X in [0, 1], world frame: the interpolant itself.
+        """(x, inputs, X) ↦ (position, quaternion) at any X in [0, 1], world frame, by interpolation.
 
-        The polynomial through the nodes, element by element, as a Chebyshev series: no singularity at a node, and
-        exact derivatives with respect to X too. X is one number; position is 3×1 and the quaternion w, x, y, z 4×1.
-        For k abscissae, ``shape[rod].map(k)`` with x and inputs repeated, or ``Solution.pose``.
+        The polynomial through the nodes of each element is a Chebyshev series: no singularity at a node, and exact
+        derivatives by X too. X is one number; position is 3×1 and the quaternion w, x, y, z 4×1. For k abscissae,
+        ``shape[rod].map(k)`` with x and inputs repeated, or ``Solution.pose``.
         """
         rod_shape = written.system.rods[written.owner].shape
         weights = interpolation_weights(written.discrete, written.owner, written["X"])
@@ -322,7 +322,7 @@ class ModelFunctions:
     def fields(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ position, quaternion and internal wrench at the nodes, and the base wrench.
 
-        World frame but for the internal wrench [moment; force], N m and N, which is in the section's.
+        All are in the world frame, except the internal wrench [moment; force], N m and N, which is in section axes.
         """
         rod = written.system.rods[written.owner]
         rotation = written.system.base(written.owner).rotation
@@ -336,9 +336,9 @@ class ModelFunctions:
 
     @owned_functions(Owner.ROD, (Output("quaternion"), Output("by_position"), Output("by_quaternion")))
     def field_jacobian(self, written: Expressions) -> list[Matrix]:
-        """(x, inputs) ↦ quaternions at the nodes, and derivatives of positions and quaternions with x, node after node.
+        """(x, inputs) ↦ quaternions at the nodes; derivatives of positions and quaternions by x, node after node.
 
-        World frame.
+        All are in the world frame.
         """
         quaternion = written.system.nodal_quaternions(written.owner)
         by_position = ca.jacobian(ca.vec(written.system.nodes(written.owner)), written["x"])
@@ -356,8 +356,8 @@ class ModelFunctions:
     def actuator(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ effort of an actuator, its conjugate, and the derivative of the conjugate with x, 1×size.
 
-        Tension and length of a tendon, pressure and volume of a chamber.
-        The derivative is what a unit of effort does.
+        These are tension and length of a tendon, pressure and volume of a chamber. The derivative is the generalised
+        force of a unit of effort.
         """
         return [ca.densify(ca.MX(value)) for value in written.system.actuators.state(written.owner)]
 
@@ -371,7 +371,7 @@ class ModelFunctions:
     def joint(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ moment or force along a joint on its section, and its angle or displacement, 1×1 each.
 
-        A joint with stops has their push as a third output; the first one counts it too.
+        A joint with stops has their push as a third output; the first output includes it.
         """
         (index,) = [i for i, joint in enumerate(written.discrete.scene.joints) if joint.name == written.owner]
         (placed,) = [placed for placed in written.discrete.constraints if placed.joint == index]
@@ -401,9 +401,9 @@ class ModelFunctions:
         header="Derivatives of position and quaternion of the body {owner}, stacked.",
     )
     def body_jacobian(self, written: Expressions) -> list[Matrix]:
-        """(x, inputs) ↦ derivatives of a body's position and quaternion, stacked 7×…, with x and with inputs.
+        """(x, inputs) ↦ derivatives of a body's position and quaternion, stacked 7×…, by x and by inputs.
 
-        In a scene with parameters (x, inputs, p), and with p too.
+        In a scene with parameters the arguments are (x, inputs, p), and derivatives by p follow.
         """
         riding = written.system.riding.get(written.owner)
         if riding is not None:
@@ -425,7 +425,7 @@ class ModelFunctions:
 
 
 def resolution_index(written: Expressions) -> Matrix:
-    """Largest turn of an interval over what can be resolved; in the literal system the error of the tip's |Q|."""
+    """Largest turn of an interval over the resolvable turn; for the literal system the error of the tip's |Q|."""
     indices: list[Matrix] = [ca.MX(0.0)]
     for name, rod in written.discrete.rods.items():
         q = written["x"][written.discrete.unknowns.strain(name)]
@@ -471,10 +471,10 @@ def _section_in_world(written: Expressions, rod: str, node: int) -> Pose:
 
 
 def _section_derivatives(written: Expressions, rod: str, node: int, carried: Pose | None = None) -> list[Matrix]:
-    """Derivatives of the pose of a section, or of a body that it carries at this pose in its axes, with all symbols.
+    """Derivatives of the pose of a section, or of a body carried at a pose in its axes, by all symbols.
 
-    They follow from the variations of the rod's fields: δr of the section, and δQ = ½ (0, δθ) ⊗ Q. A floating base
-    adds the derivatives with its pose.
+    They follow from the variations of the rod's fields: δr of the section, and δQ = ½ (0, δθ) ⊗ Q. A floating base adds
+    the derivatives by its pose.
     """
     discrete = written.discrete
     section = _section_in_world(written, rod, node)
@@ -502,7 +502,7 @@ def _section_derivatives(written: Expressions, rod: str, node: int, carried: Pos
 
 
 def _by_base(written: Expressions, rod: str, node: int) -> Matrix:
-    """Derivative of a section's position and quaternion with the unknowns that move the base of its rod, 7×size."""
+    """Derivative of a section's position and quaternion by the unknowns that move the base of its rod, 7×size."""
     own = ca.MX.sym("section", 7)
     pose = _stacked(written.system.base(rod).then(Pose(own[:3], own[3:])))
     by_unknowns: Matrix = ca.substitute(
@@ -516,7 +516,7 @@ def _stacked(pose: Pose) -> Matrix:
 
 
 def _by_strains(written: Expressions, rod: str, node: int) -> Matrix:
-    """Derivative of a section's position and quaternion with the strains of its rod, a column for each."""
+    """Derivative of a section's position and quaternion by the strains of its rod, one column for each."""
     system = written.system
     tangent = system.pose_variations(rod)
     base = system.base(rod)

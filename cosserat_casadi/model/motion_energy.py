@@ -1,7 +1,7 @@
-"""Energies, powers and momenta of a scene in motion: what its balance of energy is made of.
+"""Energies, powers and momenta of a scene in motion, the terms of its balance of energy.
 
-Along a motion the kinetic and the elastic energy grow by what loads, actuators, moving bases and changing lengths put
-in, less what the viscous stress dissipates. A length that grows brings new rod along at the speed of its section.
+Along a motion the rate of kinetic and elastic energy is the power of loads, actuators, moving bases and changing
+lengths, less the power that viscous stress dissipates. A growing length adds material at the speed of its section.
 Docs/theory.md, section 11.
 """
 
@@ -52,7 +52,7 @@ class MotionEnergy:
 
     @cached_property
     def elastic(self) -> Matrix:
-        """Elastic energy of rods and their branches, of springs and stops of joints, and between rods, 1×1, J."""
+        """Elastic energy of rods and their branches, of springs and stops of joints, and of rod contact, 1×1, J."""
         branches = [relaxation.energy for relaxation in self.system.relaxations.values()]
         springs = [
             effort.spring_energy(value) for effort, value, _ in self._free_joints if not is_zero(effort.stiffness)
@@ -63,7 +63,7 @@ class MotionEnergy:
 
     @cached_property
     def load_is_dead(self) -> FloatArray:
-        """1 for every load whose energy is told, a dead force or smooth contact, else 0; shape (loads,)."""
+        """1 for each load with a known energy, a dead force or smooth contact, else 0; shape (loads,)."""
         discrete = self.system.discrete
         flags = [isinstance(load, ContactLayer) or is_dead_force(discrete, load) for load in self._loads]
         return np.asarray(flags, dtype=float)
@@ -90,7 +90,7 @@ class MotionEnergy:
             damping = inertia.motion.rod.properties.mass_damping
             if damping is not None:
                 of_rods.append(2 * damping * inertia.kinetic_energy)
-        # What contact presses with at rest is stored: what it takes beyond that is lost.
+        # The push of contact at rest stores energy; the rest of its power is lost.
         of_contact = [
             self._power_of(load, resting=True) - self._power_of(load) for load in self._loads if _is_damped(load)
         ]
@@ -100,14 +100,14 @@ class MotionEnergy:
 
     @cached_property
     def load_powers(self) -> Matrix:
-        """Power of each load, (loads)×1, W; of contact that which it stores, without what its damping takes."""
+        """Power of each load, (loads)×1, W; for contact the power that it stores, without its damping."""
         return ca.vertcat(*[self._power_of(load, resting=_is_damped(load)) for load in self._loads])
 
     @cached_property
     def actuator_powers(self) -> Matrix:
         """Power of each actuator on its rod, (actuators)×1, W: minus its effort times the rate of its conjugate.
 
-        Where a cable rubs, the losses along it are subtracted.
+        Losses by friction along a cable are subtracted.
         """
         powers = []
         for actuator in self.system.discrete.scene.actuators:
@@ -185,7 +185,7 @@ class MotionEnergy:
         return motion
 
     def _by_inputs(self, value: Matrix) -> Matrix:
-        """Rate of a value with the inputs that move rods, at fixed unknowns and at fixed efforts and profiles."""
+        """Rate of a value by the inputs that move rods, at fixed unknowns, efforts and profiles."""
         geometry = self.system.discrete.layout.geometry
         if not geometry:
             return ca.DM(*value.shape)
@@ -196,7 +196,7 @@ class MotionEnergy:
     # Loads
 
     def _on_rods(self, load: scenes.LoadRecord, *, resting: bool = False) -> Iterator[tuple[str, Wrench]]:
-        """The rods that a load acts on with its wrenches at this instant, base axes; or those if the rods rested."""
+        """Rods that a load acts on, with its wrenches at this instant, base axes, or with its wrenches at rest."""
         of_load = self.system.resting_loads_of if resting else self.system.loads_of
         for rod in self.system.discrete.rods:
             for wrench in of_load(load, rod):
@@ -206,7 +206,7 @@ class MotionEnergy:
                     yield rod, wrench
 
     def _on_bodies(self, load: scenes.LoadRecord) -> Iterator[tuple[Pose, FrameMotion, BodyLoad]]:
-        """The bodies that a load acts on, where they are and how they move, world axes."""
+        """Poses and motions of the bodies that a load acts on, with the load on each, world axes."""
         for name, body in self.system.discrete.bodies.items():
             pose = self.system.body(name)
             loads = BodyLoads(self.system.discrete, body, pose.position, pose.rotation, self.system.arguments.inputs)
@@ -227,7 +227,7 @@ class MotionEnergy:
         return _sum(powers)
 
     def _borne(self, load: scenes.LoadRecord) -> Iterator[BorneLoad]:
-        """Wrench of a load on rods on the body that bears the opposite."""
+        """Reactions of a load on rods on the bodies that bear them."""
         for rod in self.system.discrete.rods:
             for wrench in self.system.loads_of(load, rod):
                 if isinstance(wrench, PoseWrench) and wrench.borne_by is not None:
@@ -235,7 +235,7 @@ class MotionEnergy:
                     yield BorneLoad(self.system, rod, sections)
 
     def _contact_energy(self, load: scenes.LoadRecord) -> Matrix:
-        """Energy stored in an obstacle with a width."""
+        """Energy stored in the contact with an obstacle with a width, 1×1, J."""
         energies = []
         for rod in self.system.discrete.rods:
             for wrench in self.system.resting_loads_of(load, rod):
@@ -249,7 +249,7 @@ class MotionEnergy:
         return _sum(energies)
 
     def _energy_of(self, load: scenes.LoadRecord) -> Matrix:
-        """Minus the work of dead forces from the origin of the world."""
+        """Minus the work of dead forces on a displacement from the origin of the world, 1×1, J."""
         energies = []
         for rod, wrench in self._on_rods(load):
             if wrench.force is not None:
@@ -263,7 +263,7 @@ class MotionEnergy:
         return _sum(energies)
 
     def _wrench_power(self, motion: RodMotion, wrench: Wrench) -> Matrix:
-        """Power of a wrench on the sections of a rod that move so, 1×1, W."""
+        """Power of a wrench on the sections of a rod in a motion, 1×1, W."""
         rod = motion.rod.properties.name
         powers = []
         if wrench.force is not None:
@@ -273,7 +273,7 @@ class MotionEnergy:
         return _sum(powers)
 
     def _work(self, rod: str, wrench: Wrench, vector: Matrix, moved: Matrix) -> Matrix:
-        """Sum over the loaded sections of a force or a moment times a field at the nodes, 3×M, 1×1."""
+        """Sum over the loaded sections of a force or a moment times a field at the nodes, 3×M; 1×1."""
         rod_shape = self.system.shapes[rod]
         if isinstance(wrench, LineWrench):
             per_length = Statics(rod_shape, [wrench]).line(wrench, vector)
@@ -286,7 +286,7 @@ class MotionEnergy:
     # Lengths
 
     def _length_power(self, rod: str) -> Matrix:
-        """Power of what changes a rod's length: all that works against, or with, the motion of the length alone."""
+        """Power, 1×1, W, of the drive that changes a rod's length, on the motion by the change of length alone."""
         igm = self.system.rods[rod]
         rates = self.system.strain_rates(rod)
         assert rates.ratio_rate is not None, "asked for where the length is free"
@@ -305,14 +305,14 @@ class MotionEnergy:
             powers.append(relaxation.lengthening_power)
         masses = masses_along(igm.rod)
         if masses is not None:
-            # The rod that comes along has the speed of its section already; what is fixed to it is there for good.
+            # The material that joins has the speed of its section already; masses fixed to the rod do not grow.
             inertia = RodInertia(self.system.motions[rod], masses)
             powers.append(inertia.kinetic_energy / inertia.ratio * rates.ratio_rate)
         return _sum(powers)
 
 
 def _is_damped(load: scenes.LoadRecord) -> bool:
-    """Whether a load takes energy in motion."""
+    """Whether a load dissipates energy in motion."""
     return isinstance(load, ContactLayer) and load.takes_energy
 
 

@@ -1,11 +1,11 @@
 """The named functions of a model in motion: see model/model_functions.py and docs/theory.md, section 11.
 
 Coordinates x are as in statics, v and a their first and second time derivatives. Multipliers and tensions have neither:
-their entries of v and a are not read.
+their entries of v and a are ignored.
 
 The equations of motion F(x, v, a) = 0 are those of the scene at rest under one more load, the inertia of rods and
-bodies, and the viscous stress of the rods. So the derivative with x at fixed inertia is the Jacobian of statics, and
-this module adds little.
+bodies, and the viscous stress of the rods. So the derivative by x at fixed inertia is the Jacobian of statics, and this
+module adds little.
 """
 
 from __future__ import annotations
@@ -59,9 +59,9 @@ class MotionFunctions:
 
     @cached_property
     def inverse_dynamics_in_scalars(self) -> ca.Function:
-        """Inverse dynamics as instructions on scalars, which a virtual machine runs in half to nine tenths of the time.
+        """Inverse dynamics expanded to scalar instructions, which CasADi evaluates in half to nine tenths of the time.
 
-        Derivatives are not to be taken of it. A function that leaves computations out by a value stays as it is.
+        It is not for differentiation. A function with branches that skip computations is not expanded.
         """
         kept: MotionFunctions | None = self.__dict__.get(SHARED)
         if kept is not None:
@@ -71,16 +71,16 @@ class MotionFunctions:
 
     @scene_function(Output("slips"), arguments=VELOCITY)
     def slips(self, written: Expressions) -> list[Matrix] | None:
-        """(x, v, inputs, inputs_rate) ↦ speed of nodes over the slip speed, −1 where nothing presses.
+        """(x, v, inputs, inputs_rate) ↦ sliding speed of nodes over the slip speed, −1 for nodes without contact.
 
-        Of each load that rubs, side by side, 1×…; None without friction.
+        Nodes of all loads with friction stand side by side, 1×…; None without friction.
         """
         loads = rubbing_at_nodes(written.system)
         return [ca.horzcat(*[load.slip for load in loads])] if loads else None
 
     @scene_function(Output("stiffness"), Output("damping"), Output("mass"), Output("residual"), arguments=MOTION)
     def dynamics_jacobian(self, written: Expressions) -> list[Matrix]:
-        """(x, v, a, inputs, …) ↦ derivatives of the residual with x, v and a, size×size each, and the residual."""
+        """(x, v, a, inputs, …) ↦ derivatives of the residual by x, v and a, size×size each, and the residual."""
         equations = written.equations(SceneMotionEquations)
         matrices = equations.matrices
         return [matrices.stiffness, matrices.damping, matrices.mass, equations.residual]
@@ -107,7 +107,7 @@ class MotionFunctions:
         header="Kinetic and elastic energy, energy of each load, and whether it has one.",
     )
     def energies(self, written: Expressions) -> list[Matrix]:
-        """(x, v, inputs, inputs_rate) ↦ kinetic and elastic energy, energy of each load, and whether it has one."""
+        """(x, v, inputs, inputs_rate) ↦ kinetic and elastic energy, energy of each load, and whether it is known."""
         energy = written.equations(MotionEnergy)
         return [energy.kinetic, energy.elastic, energy.of_loads, ca.DM(energy.load_is_dead)]
 
@@ -119,7 +119,7 @@ class MotionFunctions:
         arguments=MOTION,
     )
     def powers(self, written: Expressions) -> list[Matrix]:
-        """(x, v, a, inputs, …) ↦ power that is dissipated, and powers of loads, actuators, moving bases and lengths."""
+        """(x, v, a, inputs, …) ↦ dissipated power, and powers of loads, actuators, moving bases and lengths."""
         energy = written.equations(MotionEnergy)
         return [energy.dissipated_power, energy.load_powers, energy.actuator_powers, energy.base_power]
 
@@ -147,7 +147,7 @@ class SceneMotionEquations:
 
     @cached_property
     def _at_rest(self) -> SceneEquations:
-        """The equations that hold at rest, with the inertia forces of the motion."""
+        """The equations of statics, with the inertia forces of the motion as loads."""
         return SceneEquations(self.system)
 
     @cached_property
@@ -183,7 +183,7 @@ class SceneMotionEquations:
                 matrix.add(rows, columns, block)
 
         for rod in system.motions:
-            # Equations depend on the rates of the fields of a rod by its mass, or by a load.
+            # The equations of a rod depend on the rates of its fields only through its mass or a load.
             loads = system.rods[rod].statics.pose_loads
             if rod in system.inertias or any(load.load.kernel.rates for load in loads):
                 for rows, columns, orders in self._rod_blocks(rod):
@@ -230,7 +230,7 @@ class SceneMotionEquations:
 
     @property
     def _resisted_coordinates(self) -> Iterator[tuple[PlacedConstraint, Matrix, Matrix]]:
-        """Joints with a damper or friction: what that adds to their equation, and its derivative with the rate, s."""
+        """Joints with a damper or friction, with its term in their equation and the term's rate derivative, s."""
         discrete = self.system.discrete
         for placed in discrete.free_coordinates:
             effort = self.system.joint_effort(placed)
@@ -243,7 +243,7 @@ class SceneMotionEquations:
             yield placed, as_matrix(rows), as_matrix(by_rate)
 
     def _rod_blocks(self, rod: str) -> list[tuple[slice, slice, Sequence[Matrix]]]:
-        """Blocks of a rod's inertia and of loads of its motion in the rows of its strains, and of a floating base."""
+        """Blocks of a rod's inertia and motion-dependent loads in the rows of its strains and of its floating base."""
         discrete = self.system.discrete
         base = discrete.unloaded.floating_base(rod)
         unit = discrete.rods[rod].energy_unit
@@ -267,7 +267,7 @@ class SceneMotionEquations:
         ]
 
     def _to_unknowns(self, rod: str, base: FrameName) -> Jet:
-        """Jet from the unknowns of a rod and its base to strains and the motion of the base in its axes."""
+        """Jet of the matrix from the unknowns of a rod and its base to strains and the base's motion in base axes."""
         base_R_world = self.system.frame(base).rotation.T
         moved = self.system.frame_motions[base].motion_jet(base_R_world)
         count = self.system.discrete.rods[rod].size

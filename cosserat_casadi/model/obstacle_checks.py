@@ -1,4 +1,4 @@
-"""Obstacles that cannot be where the scene puts them, and uses of a scene that know of no contact."""
+"""Refusal of misplaced obstacles, and of contact where a use of the scene does not support it."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.rod.properties import RodProperties
 
 LOOKED_AT = np.linspace(0.0, 1.0, 201)
-"""Abscissae whose radius an obstacle is held against."""
+"""Abscissae of the sections that are checked against an obstacle."""
 
 TOUCHING = 1e-9
 """Depth of a clamp in an obstacle, relative to the length of its rod, that is put down to rounding."""
 
 
 def check_obstacles(discrete: DiscreteScene) -> None:
-    """Refuse a scene whose rods start, or are held, inside obstacles, or do not fit into them, nor do its bodies.
+    """Refuse a scene with rods or bodies that start, or are held, inside obstacles, or do not fit into a lumen.
 
     Raises:
         SceneError: with the faults of all obstacles.
@@ -33,28 +33,28 @@ def check_obstacles(discrete: DiscreteScene) -> None:
 
 
 WIDTH = "give each {width}; or solve the scene, or leave them out"
-"""Remedy where contact that is exact is not looked for."""
+"""Remedy where exact contact is not supported."""
 
 RELAXED = "take relaxed_contact(model) for the model; or give each {width}"
-"""Remedy where contact that is exact is not looked for in a problem at rest."""
+"""Remedy where exact contact is not supported in a problem at rest."""
 
 SUGGESTED = 5e-3
 """Width over the length of the shortest rod: a thinner layer takes more modes and shorter steps of a load path."""
 
 
 def suggested_width(scene: scenes.Scene) -> str:
-    """The sentence about a width in a remedy: an example, and its effect on rods at rest."""
+    """Sentence of a remedy that suggests a width: an example, and its effect on rods at rest."""
     width = SUGGESTED * min(float(rod.length) for rod in scene.rods)
     return f"a width, such as {width:.1g} m: contact is smooth then, and rods at rest are off by about as much"
 
 
 def refuse_obstacles(scene: scenes.Scene, what: str, remedy: str = WIDTH) -> None:
-    """Refuse a scene with obstacles that are touched exactly where such contact is not looked for.
+    """Refuse a scene with exact contact of obstacles for a use that does not support it.
 
     Args:
         scene: the scene.
         what: the request in words, such as "a motion".
-        remedy: what to do about it; ``{width}`` in it stands for the sentence of :func:`suggested_width`.
+        remedy: advice, in which ``{width}`` stands for the sentence of :func:`suggested_width`.
 
     Raises:
         SceneError: the scene has obstacles without a width.
@@ -65,11 +65,11 @@ def refuse_obstacles(scene: scenes.Scene, what: str, remedy: str = WIDTH) -> Non
 
 
 def exact_rods(scene: scenes.Scene, what: str) -> Iterator[Problem]:
-    """Problems of rods that touch each other exactly where such contact is not looked for.
+    """Problems of exact contact between rods for a use that does not support it.
 
     Args:
         scene: the scene.
-        what: what does not look for it, in words.
+        what: the use in words.
     """
     for number, contact in enumerate(scene.rod_contacts):
         if contact.exact:
@@ -79,7 +79,7 @@ def exact_rods(scene: scenes.Scene, what: str) -> Iterator[Problem]:
 
 
 def refuse_held_by_contact(scene: scenes.Scene) -> None:
-    """Refuse to look for the equilibrium of free rods that only contact that is exact would hold.
+    """Refuse to solve for the equilibrium of free rods that exact contact alone would hold.
 
     Raises:
         SceneError: with all such rods.
@@ -88,8 +88,8 @@ def refuse_held_by_contact(scene: scenes.Scene) -> None:
 
 
 def held_by_contact(scene: scenes.Scene) -> Iterator[Problem]:
-    """Free rods that touch obstacles exactly, or whose bodies do."""
-    # Contact has no friction: along an obstacle such a rod would be in balance nowhere, or anywhere.
+    """Free rods that touch obstacles by exact contact, or whose bodies do."""
+    # Contact has no friction: along an obstacle such a rod would be in equilibrium nowhere, or anywhere.
     remedy = "give its base a place; or let it move: simulate the scene"
     for obstacle in scene.obstacles:
         for rod in scene.rods:
@@ -100,7 +100,7 @@ def held_by_contact(scene: scenes.Scene) -> Iterator[Problem]:
 
 
 def _held_by(scene: scenes.Scene, body: str, rod: RodProperties) -> dict[str, tuple[FloatArray, float]]:
-    """How a rod is held by a body: places of its sections in the axes of the body, and their radii."""
+    """Sections of a rod that a body holds: their poses in the axes of the body, and their radii."""
     held = {}
     for joint in scene.joints:
         if (joint.body, joint.rod) == (body, rod.name):
@@ -115,7 +115,7 @@ def _problems(discrete: DiscreteScene) -> Iterator[Problem]:
         properties = discrete.rods[rod.name].properties
         radii = section_radius(properties, LOOKED_AT)
         in_world = {}
-        # Where a carried rod starts is for its carrier to say.
+        # The start of a carried rod is checked with its carrier.
         if rod.base.rod is None:
             in_world["starts"] = (known(base_pose(rod)[0]), float(radii[0]))
         for support in discrete.scene.supports:
@@ -128,7 +128,7 @@ def _problems(discrete: DiscreteScene) -> Iterator[Problem]:
             yield from member.faults(obstacle, float(radii.max()))
             held = in_world
             if obstacle.body is not None:
-                # Where the body comes to be is not known before it is solved; what it carries goes with it.
+                # The pose of the body is unknown before the scene is solved, and so are the poses of what it carries.
                 held = _held_by(discrete.scene, obstacle.body, properties)
             for how, (position, radius) in held.items():
                 depth = radius - float(member.function(obstacle)(position)[0])

@@ -38,12 +38,12 @@ def _sum(of_rods: list[Count]) -> Count:
 def prices_of_effects(scene: scenes.Scene, progress: StageProgress | None = None) -> dict[str, Count]:
     """Operations that each load, actuator, obstacle with a width and contact of rods adds to the residual, by name.
 
-    The price is the residual with the effect less the residual without it; of contact also without the elements that it
-    asks for, and with all pairs of sections, as if they were near.
+    The price is the cost of the residual with the effect less the cost without it. Without contact the elements that it
+    asks for are missing too. All pairs of sections count, as if they were near.
 
     Args:
-        scene: with all effects.
-        progress: told which effect is left out, how many were, and of how many.
+        scene: the scene with all effects.
+        progress: is called with the effect left out, the number left out so far, and the number of effects.
     """
     scene = scene.baked()
     without = {cause.name: without_load(scene, cause.name) for cause in scene.causes}
@@ -64,7 +64,7 @@ def prices_of_effects(scene: scenes.Scene, progress: StageProgress | None = None
 
 
 def is_damped(scene: scenes.Scene) -> bool:
-    """Whether a rod of the scene is damped, or contact or a joint takes energy."""
+    """Whether a rod of the scene is damped, or contact or a joint dissipates energy."""
     rods = any(rod.damping is not None for rod in scene.rods)
     rods = rods or any(contact.friction for contact in scene.rod_contacts)
     rods = rods or any(getattr(joint, key, 0.0) > 0.0 for joint in scene.joints for key in ("damping", "friction"))
@@ -76,12 +76,12 @@ def without_damping(scene: scenes.Scene) -> scenes.Scene:
     rods = tuple(rod.model_copy(update={"damping": None}) for rod in scene.rods)
     obstacles = tuple(obstacle.model_copy(update={"damping": 0.0, "friction": 0.0}) for obstacle in scene.obstacles)
     contacts = tuple(contact.model_copy(update={"friction": 0.0}) for contact in scene.rod_contacts)
-    # A joint keeps its coordinate, and gets none by a key that was not given.
+    # A joint keeps its coordinate, and must not get one by a key that the scene does not have.
     joints = tuple(
         joint.model_copy(update=dict.fromkeys(joint.model_fields_set & {"damping", "friction"}, 0.0))
         for joint in scene.joints
     )
-    # A parameter is named OWNER.FIELD, or OWNER.FIELD.NUMBER; what follows it is of the same kind.
+    # A parameter is named OWNER.FIELD or OWNER.FIELD.NUMBER: the second part tells what it is.
     named = zip(scene.parameters, scene.parameter_names(), strict=True)
     parameters = tuple(entry for entry, name in named if name.split(".")[1] not in ("damping", "friction"))
     return scene.model_copy(
@@ -96,10 +96,10 @@ def without_damping(scene: scenes.Scene) -> scenes.Scene:
 
 
 def without_load(scene: scenes.Scene, name: str) -> scenes.Scene:
-    """The scene without one of its loads or actuators, and without the inputs, ranges and parameters that are of it."""
+    """The scene without one of its loads or actuators, and without the inputs, ranges and parameters of this one."""
 
     def is_other(field: str) -> bool:
-        """Whether a name such as ``push.force`` is of another part of the scene."""
+        """Whether a name such as ``push.force`` belongs to another part of the scene."""
         return field.split(".")[0] != name
 
     named = zip(scene.parameters, scene.parameter_names(), strict=True)

@@ -1,4 +1,4 @@
-"""How many operations a function takes."""
+"""Number of operations of a function."""
 
 from __future__ import annotations
 
@@ -39,10 +39,10 @@ _MOVES = frozenset(
 
 @dataclass(frozen=True)
 class Count:
-    """A number of scalar operations.
+    """Number of scalar operations.
 
     Attributes:
-        number: of operations.
+        number: number of operations.
         exact: whether it was counted after expansion, common terms shared; else it is a bound from above.
     """
 
@@ -52,7 +52,7 @@ class Count:
     def __str__(self) -> str:
         if self.exact:
             return f"{self.number:,}"
-        # The least number of two digits and zeros that is not below it.
+        # Round up to two digits and zeros.
         unit = 10 ** max(len(str(abs(self.number))) - 2, 0)
         return f"at most {-(-self.number // unit) * unit:,}"
 
@@ -75,7 +75,7 @@ def most_operations(function: ca.Function, known: dict[int, int] | None = None) 
 
     Args:
         function: the function.
-        known: bounds of functions that it may call, by their hash; its own and theirs are added.
+        known: bounds of functions that it may call, by hash; bounds of this function and of its callees are added.
     """
     known = {} if known is None else known
     key = hash(function)
@@ -85,7 +85,7 @@ def most_operations(function: ca.Function, known: dict[int, int] | None = None) 
 
 
 def counts(functions: Sequence[ca.Function]) -> list[Count]:
-    """Operations of functions that are compared: all exact, or all bounds where expansion would take seconds."""
+    """Operations of functions for a comparison: all exact, or all bounds if expansion would take seconds."""
     bounds = [most_operations(function) for function in functions]
     if sum(bounds) <= COUNTED_EXACTLY:
         return [Count(operations(function), exact=True) for function in functions]
@@ -93,7 +93,7 @@ def counts(functions: Sequence[ca.Function]) -> list[Count]:
 
 
 def count(function: ca.Function) -> Count:
-    """Operations of a function, or a bound where its expansion would take seconds."""
+    """Operations of a function, or a bound if its expansion would take seconds."""
     (of_function,) = counts([function])
     return of_function
 
@@ -106,7 +106,7 @@ def _bound(function: ca.Function, known: dict[int, int]) -> int:
         parts = function.info()
         return int(parts["n"]) * most_operations(parts["f"], known)
     if kind == "Switch":
-        # One of its functions is called, whose operations are bounded by those of the longest.
+        # A switch calls one of its functions: the longest one bounds its operations.
         parts = function.info()
         return max(most_operations(part, known) for part in (*parts["f"], parts["f_def"]))
     total = 0
@@ -130,7 +130,7 @@ def _operations_of_node(instruction: int, node: ca.MX, known: dict[int, int]) ->
     powers = (ca.OP_POW, ca.OP_CONSTPOW)
     if instruction not in powers and (node.is_unary() or node.is_binary()):
         return int(node.nnz())
-    # Of some other kind, such as a scalar product: expanded with symbols before it.
+    # Any other kind, such as a scalar product, is expanded with symbols as its arguments.
     before = [node.dep(i) for i in range(node.n_dep()) if not node.dep(i).is_constant()]
     symbols = [ca.MX.sym(f"before{i}", term.sparsity()) for i, term in enumerate(before)]
     (alone,) = ca.graph_substitute([node], before, symbols)

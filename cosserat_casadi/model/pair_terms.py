@@ -1,9 +1,9 @@
 """Terms of two rods that push each other: forces on both, and the second variation of their energy.
 
-The centres of the sections of both are known, and so are the forces, minus the derivatives of one energy. On each rod
-they are a dead force per length, which statics and tangents know already. The rest of the
-derivative with the unknowns is Gᵀ H G, with the second derivative H of the energy and the motions G of the sections by
-the strains of their rod and by its base, where that floats.
+The forces are minus the derivatives of one energy of the centres of the sections of both. On each rod they are a dead
+force per length, which statics and tangents take like any other. The rest of the derivative by the unknowns is Gᵀ H G,
+with the second derivative H of the energy and the motions G of the sections by the strains of their rod and by its
+base, if it floats.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from cosserat_casadi.model.system import System
 
 HALF_TURN = 1e-6
-"""Least 2 + 2 cos θ of a rotation by θ between points of a path: tan θ/2 has no end at half a turn."""
+"""Least 2 + 2 cos θ of a rotation by θ between points of a path: tan θ/2 grows without bound at half a turn."""
 
 
 @dataclass(frozen=True)
@@ -44,9 +44,9 @@ class ContactSide:
     Attributes:
         system: the scene.
         rod: name of the rod.
-        count: number of sections that stand for a part of the rod. Sections at the tip that stand for none fill the
-            last panel; with them there are S.
-        history: what friction remembers of a last point of a path; None without.
+        count: number of sections that represent a part of the rod each. Further sections at the tip, which represent
+            none, fill the last panel up to S sections.
+        history: memory of friction from the last point of a path; None without a path.
     """
 
     system: System
@@ -61,7 +61,7 @@ class ContactSide:
 
     @property
     def at_sections(self) -> Matrix:
-        """Positions of the sections that stand for a part of the rod, world axes, 3×count, m."""
+        """Positions of the sections that represent a part of the rod, world axes, 3×count, m."""
         return self.sections.positions[:, : self.count]
 
     @property
@@ -100,7 +100,7 @@ class ContactSide:
 
     @property
     def _motions(self) -> Matrix:
-        """Motions of the sections as friction sees them, world axes, MOTION×S; without columns where nothing rubs."""
+        """Motions of the sections for the law of friction, world axes, MOTION×S; without columns without friction."""
         motion = self.system.motions.get(self.rod)
         if motion is not None:
             nodal = ca.vertcat(*[self._rotation @ rate for rate in (motion.velocity, motion.angular_velocity)])
@@ -111,7 +111,7 @@ class ContactSide:
         return ca.densify(nodal @ self.interpolation.T)
 
     def _moved_since(self, before: Matrix) -> Matrix:
-        """Displacements and rotations of the nodes since they had other poses, MOTION×M."""
+        """Displacements and rotations of the nodes from other poses, MOTION×M."""
         own, remembered = self.discrete.grid, self.system.discrete.remembered[self.rod]
         if own is not remembered:
             before = before @ ca.DM(remembered.interpolation_matrix(known(own.nodes)).T)
@@ -131,7 +131,7 @@ class ContactSide:
         return ca.vertcat(self.system.nodes(self.rod), *directors)
 
     def wrench(self, force: Matrix, moment: Matrix | None = None) -> LineWrench:
-        """Load on the nodes that does the work of forces and moments on the sections, per length, base axes.
+        """Load per length on the nodes that does the same work as forces and moments on the sections, base axes.
 
         Args:
             force: force on the sections, 3×S, N, world axes.
@@ -146,14 +146,14 @@ class ContactSide:
 
     @cached_property
     def base_frame(self) -> FrameName | None:
-        """The frame that the base of the rod is; None where it rests in the world."""
+        """The floating frame of the rod's base; None if the base rests in the world."""
         return self.system.discrete.unloaded.floating_base(self.rod)
 
     @cached_property
     def motion(self) -> Matrix:
         """Motion of the sections, world axes, 3n×S: three components, each with a row for each coordinate.
 
-        The coordinates are the strains of the rod, then the motion [δθ; δr] of its base where that floats.
+        The coordinates are the strains of the rod, then the motion [δθ; δr] of its base if it floats.
         """
         tangent = self.system.tangents[self.rod]
         grid = self.discrete.grid
@@ -174,7 +174,7 @@ class ContactSide:
 
     @property
     def coordinates(self) -> FloatArray:
-        """Places of the sections in the coordinate of the grid, shape (S,)."""
+        """Coordinates of the sections on the grid, shape (S,)."""
         return np.minimum((np.arange(self.columns) + 0.5) / self.count, 1.0)
 
     @property
@@ -207,7 +207,7 @@ class PairTerms:
 
     @cached_property
     def sides(self) -> tuple[ContactSide, ...]:
-        """The sections of both rods; of a rod that touches itself once."""
+        """The sections of both rods; one entry for a rod that touches itself."""
         names = dict(zip(self.pair.rods, self.pair.sections, strict=True))
         return tuple(ContactSide(self.system, name, count, self.history) for name, count in names.items())
 
@@ -227,7 +227,7 @@ class PairTerms:
         return self._factor * self.section_pairs.energy
 
     def wrenches(self, rod: str) -> list[LineWrench]:
-        """The push on a rod, and friction, base axes; none on a rod that is not of the pair."""
+        """The push and the friction on a rod, base axes; nothing for a rod outside of the pair."""
         pushes = zip(self.sides, self._gradients, strict=True)
         loads = [side.wrench(-self._factor * gradient) for side, gradient in pushes if side.rod == rod]
         rubs = zip(self.sides, self.frictions, strict=False)
@@ -236,7 +236,7 @@ class PairTerms:
 
     @property
     def rubs(self) -> bool:
-        """Whether there is friction: in motion, or along a path."""
+        """Whether friction acts: in motion, or along a path."""
         return self.pair.friction > 0.0 and (bool(self.system.motions) or self.history is not None)
 
     @cached_property
@@ -250,13 +250,13 @@ class PairTerms:
 
     @property
     def rubbing(self) -> Rubbing:
-        """How the sections of the first rod rub: history, slip, 1×k, and force, 3×k, N."""
+        """Friction of the sections of the first rod: history, slip, 1×k, and force, 3×k, N."""
         assert self.history is not None, "asked for along a path"
         count = self.sides[0].count
         way, push, pressing = ca.vertsplit(self.section_pairs.way[:, :count], [0, 3, 6, 7])
         pressed = self.history.is_known * (pressing > 0.0)
         way = way * ca.repmat(pressed / ca.if_else(pressing > 0.0, pressing, 1.0), 3, 1)
-        # Along the surface of all pairs together: projected on that of each pair it would fade, point after point.
+        # The mean surface of all pairs takes the projection: projected on each pair's surface the drag would fade.
         square = ca.sum1(push**2)
         drag = way - push * ca.repmat(ca.sum1(push * way) / ca.if_else(square > 0.0, square, 1.0), 3, 1)
         share = ca.sqrt(ca.sum1(drag**2)) / self.pair.slip_way
@@ -267,7 +267,7 @@ class PairTerms:
 
     @property
     def dissipated_power(self) -> Matrix:
-        """Power that friction takes, 1×1, W."""
+        """Power that friction dissipates, 1×1, W."""
         powers = [
             -ca.dot(friction, side.sections.motion) for side, friction in zip(self.sides, self.frictions, strict=True)
         ]
@@ -275,13 +275,13 @@ class PairTerms:
 
     @property
     def _gradients(self) -> list[Matrix]:
-        """Derivatives of the energy with the positions of the sections of each side, 3×S, N."""
+        """Derivatives of the energy by the positions of the sections of each side, 3×S, N."""
         first, second = self.section_pairs.gradient
         return [first + second] if self.pair.itself else [first, second]
 
     @cached_property
     def frictions(self) -> Sequence[Matrix]:
-        """[Force; moment] of friction on the sections of each side, 6×S; none without."""
+        """[Force; moment] of friction on the sections of each side, 6×S; empty without friction."""
         if not self.rubs:
             return []
         if self.pair.name in self.system.friction:
@@ -296,7 +296,7 @@ class PairTerms:
         for sections in (self.section_pairs.first, self.section_pairs.second):
             fields = (sections.positions, ca.vertcat(sections.data, sections.motion))
             derivatives = [ca.jacobian(ca.vec(field), argument) for field in fields]
-            # Most unknowns move neither rod: their columns are left out.
+            # Columns of unknowns that move neither rod, which are most, are left out.
             moving = {column for derivative in derivatives for column in derivative.sparsity().get_triplet()[1]}
             own = sorted(moving)
             columns.append(own)
@@ -312,7 +312,7 @@ class PairTerms:
 
     @cached_property
     def stiffness(self) -> dict[tuple[str, str], Matrix]:
-        """Gᵀ H G by rods, in the coordinates of each side, J."""
+        """Gᵀ H G for each pair of rods, in the coordinates of each side, J."""
         motions = [side.motion for side in self.sides]
         own, across, other = self.section_pairs.stiffness(motions[0], motions[-1])
         first, second = self.pair.rods
@@ -328,6 +328,6 @@ class PairTerms:
 
     @property
     def _factor(self) -> Matrix | float:
-        """Factor of the push on the way from the unloaded scene: it grows as the loads do."""
+        """Factor of the push along the load path: the load factor, as for loads."""
         load_factor = self.system.arguments.load_factor
         return 1.0 if load_factor is None else load_factor

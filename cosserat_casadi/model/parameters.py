@@ -1,8 +1,8 @@
 """Parameters of a model: numbers of the scene that are arguments of its functions, as records.
 
 A model with parameters is written in a scene whose numbers are expressions: where the scene names a number, its record
-holds an entry of the symbol p. What computes with the numbers of a scene therefore needs to know of no parameter. All
-that only scales the equations, such as EI/ℓ, is of the scene's own numbers, so that unknowns mean the same whatever p.
+holds an entry of the symbol p. Code that computes with these numbers does not know of parameters. Scales of the
+equations, such as EI/ℓ, follow from the scene's own numbers: unknowns have the same units for every p.
 """
 
 from __future__ import annotations
@@ -56,8 +56,8 @@ class ParameterLayout(StackedLayout[scenes.NamedNumbers]):
 
     @property
     def quaternions(self) -> list[int]:
-        """Places of the first numbers of quaternions of which either sign will do."""
-        # The sign of that of a support says by which way round a tip is turned.
+        """Indices of the first entries of quaternions that may have either sign."""
+        # The sign of a support's quaternion tells in which direction its tip is turned.
         return [span.start for entry, span in self._turns if entry.holder.table != "supports"]
 
     @property
@@ -66,14 +66,14 @@ class ParameterLayout(StackedLayout[scenes.NamedNumbers]):
         return [(entry, span) for entry, span in self if entry.keys[-1] == "quaternion" and entry.size == 4]
 
     def between(self, first: FloatArray, last: FloatArray, share: float) -> FloatArray:
-        """Parameters on the straight line between two stacks, quaternions of unit length, as a scene has them."""
+        """Parameters at a share of the straight line between two stacks, with quaternions scaled to norm 1."""
         p = (1.0 - share) * first + share * last
         for _, span in self._turns:
             p[span] /= max(float(np.linalg.norm(p[span])), float(np.finfo(float).tiny))
         return p
 
     def rate_between(self, first: FloatArray, last: FloatArray, share: float) -> FloatArray:
-        """Derivative of the parameters on that line with the share."""
+        """Derivative of the parameters on the line between two stacks by the share."""
         rate = last - first
         p = (1.0 - share) * first + share * last
         for _, span in self._turns:
@@ -84,7 +84,7 @@ class ParameterLayout(StackedLayout[scenes.NamedNumbers]):
 
     @property
     def turning_axes(self) -> list[tuple[str, int]]:
-        """Parameters that turn the axis of a joint, by name, with the joint's place in the scene's list."""
+        """Names of the parameters that turn the axis of a joint, with the joint's index in the scene's list."""
         turning = []
         for entry in self.entries:
             for numbers in entry.all_numbers:
@@ -95,7 +95,7 @@ class ParameterLayout(StackedLayout[scenes.NamedNumbers]):
         return turning
 
     def written(self, scene: scenes.Scene, p: Matrix | FloatArray) -> scenes.Scene:
-        """The scene whose numbers are entries of p: expressions, or numbers, which are not judged."""
+        """The scene with entries of p as its numbers: expressions, or numbers, which are not checked."""
         for entry, span in self:
             values = [p[i] for i in range(span.start, span.stop)]
             scene = scene.with_numbers(entry, values)
@@ -106,14 +106,14 @@ class ParameterLayout(StackedLayout[scenes.NamedNumbers]):
 
         Args:
             scene: the scene that names the parameters.
-            values: by name; other parameters keep the scene's value.
+            values: values by name; other parameters keep the scene's values.
 
         Raises:
             SceneError: a name is unknown, or a scene with these values is refused.
         """
         p = self.pack(values).tolist()
         changed = self.written(scene, p).in_proportion().baked()
-        # Ranges, and what two numbers have to do with each other, are the scene's to judge.
+        # The scene checks ranges of numbers and relations between them.
         return scenes.scene_from_dict(scene_tables(changed))
 
 
@@ -139,7 +139,7 @@ def parameter_layout(scene: scenes.Scene) -> ParameterLayout:
 
 
 class WithParameters(ABC):
-    """A model whose functions may take parameters behind the inputs."""
+    """A model whose functions may take the parameters as their argument after the inputs."""
 
     @property
     @abstractmethod
@@ -151,20 +151,20 @@ class WithParameters(ABC):
         """The model with constants for its parameters.
 
         Raises:
-            SceneError: the scene refuses a value, or a load cannot be where it is then.
+            SceneError: the scene refuses a value, or a load cannot act for these values.
         """
 
     def at(self, values: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None = None) -> Self:
-        """The model with its parameters fixed: its functions take unknowns and inputs alone.
+        """The model with fixed parameters: its functions take unknowns and inputs alone.
 
         Unknowns keep their meaning: they are counted in units of the scene's numbers.
 
         Args:
-            values: parameters by name, where parameters not named keep the scene's values; or all parameters stacked,
-                shape (parameters.size,).
+            values: parameters by name, others keep the scene's values; or all parameters stacked, shape
+                (parameters.size,).
 
         Raises:
-            SceneError: a name is unknown, the scene refuses a value, or a load cannot be where it is then.
+            SceneError: a name is unknown, the scene refuses a value, or a load cannot act for these values.
         """
         layout = self.parameters
         if values is not None and not isinstance(values, Mapping):

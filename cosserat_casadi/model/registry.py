@@ -1,4 +1,4 @@
-"""Loads and actuators that this version knows. A new one is a file in loads/ or actuators/ and a line below."""
+"""Registry of loads and actuators. A new kind takes a file in loads/ or actuators/ and a line below."""
 
 from __future__ import annotations
 
@@ -42,10 +42,10 @@ for shipped in (
     register(shipped)
 
 for found in (ContactPointLoad, ContactLineLoad, PenetrationLoad, ContactLayerLoad):
-    # What obstacles press with: no scene file names it as a load, so that the scene format does not know it.
+    # The push of obstacles: no scene file names it as a load, so that the scene format does not have it.
     EFFECTS[found.kind] = found()
 
 
 def remembering(loads: Iterable[LoadRecord]) -> list[Any]:
-    """Loads that remember the sections of their ``rod``: loads of an ``obstacle`` that rubs."""
+    """Loads with a memory of the sections of their ``rod``: loads of an ``obstacle`` with friction."""
     return [load for load in loads if EFFECTS[load.kind].remembers(load)]

@@ -1,10 +1,10 @@
-"""Modes that the data of a scene ask for, before anything is solved.
+"""Modes that the data of a scene require, before anything is solved.
 
 A cable that winds round a rod, an unloaded curvature or a spread load of high degree put waves into the stress.
-Legendre coefficients of a wave are nil up to about the degree of its frequency, a helix of n turns in an element
-excites those around πn: with fewer modes nothing shows in the last coefficients, however large the error is. The data
-are therefore projected on polynomials, element by element, and no level below the degree at which their coefficients
-have decayed can be a reference solution (docs/theory.md, section 10).
+Legendre coefficients of a wave are nearly zero up to about the degree of its frequency, and a helix of n turns in an
+element excites degrees around πn: with fewer modes the last coefficients are small, however large the error is. The
+data are therefore projected on polynomials, element by element, and no level below the degree at which their
+coefficients have decayed can be a reference solution (docs/theory.md, section 10).
 """
 
 from __future__ import annotations
@@ -30,34 +30,34 @@ from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.strain import DiscreteRod
 
 DECAYED = 0.1
-"""Share of the largest coefficient, but for the constant; all coefficients beyond a signal's degree are below it."""
+"""Share of the largest coefficient, the constant excluded, that all coefficients beyond a signal's degree are below."""
 
 FAINT = 1e-3
-"""Share of the largest coefficient of all below which a coefficient is not part of a signal."""
+"""Share of the largest coefficient, the constant included, below which a coefficient is not part of a signal."""
 
 BEYOND = 2
-"""Modes beyond a signal's degree, whose decay tells how fast the rest converges."""
+"""Modes beyond a signal's degree, whose decay shows how fast the remaining ones converge."""
 
 SECTIONS_OF_TURN = 64
 """Sections of an element at which its unloaded curvature is summed."""
 
 SLOW_MODES = 7
-"""Modes that see any signal that varies slowly, whose square has few modes as well."""
+"""Modes that resolve any slowly varying signal, whose square has few modes as well."""
 
 WAVES_FACTOR = 2
-"""Factor on modes at which products of waves show, which have twice their frequency."""
+"""Factor on modes with which products of waves are resolved, which have twice the frequency."""
 
 PROJECTIONS = (12, 24, 48, 96, 192)
 """Modes of the projections of an actuator, tried one after the other until two agree."""
 
 
 def signal_modes(scene: scenes.Scene) -> int:
-    """Modes per strain component and element from which on a level can see what the scene puts along its rods."""
+    """Least modes per strain component and element of a level that resolves the waves in the scene's data."""
     degrees = [0]
     for record in scene.rods:
         breaks = element_ends(scene, record.name)
         for actuator in scene.actuators:
-            # Between its holes a straight cable pulls with one force: there are no waves.
+            # A cable that is straight between its holes pulls with one force in each gap: there are no waves.
             if EFFECTS[actuator.kind].acts_on(actuator, record.name) and holes(actuator) is None:
                 degree = _actuator_degree(actuator, record, breaks)
                 degrees.append(degree)
@@ -84,14 +84,14 @@ def _actuator_degree(actuator: scenes.Actuator, record: scenes.Rod, breaks: tupl
     for modes in PROJECTIONS:
         coarser = degree
         degree = _last_degree(_projection(actuator, _discrete_rod(record, breaks, modes)))
-        # On too few nodes waves pass for longer ones: a finer projection tells.
+        # Too few nodes alias waves to longer ones, which a finer projection shows.
         if degree == coarser:
             break
     return degree
 
 
 def _last_degree(sizes: FloatArray) -> int:
-    """Last degree before the coefficients have decayed, from their sizes by degree; 0 of a constant."""
+    """Last degree before the coefficients have decayed, from their sizes by degree; 0 for a constant signal."""
     varying = sizes[1:].max(initial=0.0)
     bound = max(DECAYED * varying, FAINT * sizes.max())
     present = np.flatnonzero(sizes[1:] > bound)
@@ -102,18 +102,18 @@ def _last_degree(sizes: FloatArray) -> int:
 
 @lru_cache(maxsize=8)
 def _discrete_rod(record: scenes.Rod, breaks: tuple[float, ...], modes: int) -> DiscreteRod:
-    """A rod with so many modes of every strain in each element."""
+    """A discrete rod with this number of modes for every strain in each element."""
     rod = rod_properties(record)
     return DiscreteRod(rod, Discretisation((modes,) * len(rod.admitted), 2 * modes, breaks, "magnus4"))
 
 
 def _projection(actuator: scenes.Actuator, discrete_rod: DiscreteRod) -> FloatArray:
-    """Largest strain by a unit effort in the polynomials of each degree, over components and elements, shape (modes,).
+    """Largest strain coefficient of each degree under a unit effort, over components and elements, shape (modes,).
 
     The gradient of length or volume is the projection of the actuation stress, ∂L/∂q = ℓ ∫ Φᵀ Λ_ad dX.
     """
     discretisation = discrete_rod.discretisation
-    # What an actuator works on follows from strains alone: the rotations of the sections are not integrated.
+    # Length or volume of an actuator follows from strains alone: rotations of sections are not integrated.
     unturned = ca.repmat(ca.DM([1, 0, 0, 0]), 1, discrete_rod.grid.elements * discretisation.nodes + 1)
     unloaded = Shape(discrete_rod, ca.DM.zeros(discrete_rod.size), unturned, None)
     quantity = EFFECTS[actuator.kind].quantity(actuator, discrete_rod.grid)

@@ -1,8 +1,8 @@
 """Bodies that ride on a section of a rod: one rigid joint carries them, so that their poses are no unknowns.
 
-What acts on such a body acts on the section, moved there with its arm, and so does its inertia. All of it is a load on
-the rod, whose equations and derivatives take it as they take any other (rod/pose_load.py, rod/motion_load.py). See
-docs/theory.md, sections 8 and 11.
+Loads on such a body, and its inertia, are moved to the section with their arms. All of them are loads on the rod, whose
+equations and derivatives take them like any other (rod/pose_load.py, rod/motion_load.py). See docs/theory.md, sections
+8 and 11.
 """
 
 from __future__ import annotations
@@ -70,18 +70,18 @@ class RidingBody:
 
     @cached_property
     def _rotation(self) -> Matrix:
-        """section_R_body, 3×3; zeros of a constant one are not stored."""
+        """Rotation section_R_body, 3×3; zeros of a constant rotation are not stored."""
         return sparse_known(self.in_section.rotation)
 
     def _arm(self, point: Sequence[Scalar]) -> Matrix:
-        """A point of the body from the centre of the section, section axes, 3×1, m."""
+        """Vector from the centre of the section to a point of the body, section axes, 3×1, m."""
         return sparse_known(self.in_section.position + self._rotation @ as_matrix(as_vector(point)))
 
     def loads(self, base: RodBase, inputs: Matrix) -> Iterator[RodLoad]:
         """The loads on the body as loads on its section.
 
         Args:
-            base: of the rod.
+            base: base of the rod.
             inputs: stacked inputs.
         """
         for load in self.discrete.loads:
@@ -99,7 +99,7 @@ class RidingBody:
     def _free_of_pose(
         self, kernel: TracedLoad, point: BodyPoint, base: RodBase, values: Mapping[str, Matrix]
     ) -> Iterator[RodLoad]:
-        """A load of fixed direction, or one that turns with the body; none where it is always zero."""
+        """A load of fixed direction, or a follower of the body, on the section; nothing if it is always zero."""
         force, moment = kernel.coefficients(values)
         if force is None and moment is None:
             return
@@ -121,7 +121,7 @@ class RidingBody:
     def _pose_wrench(
         self, kernel: TracedLoad, point: BodyPoint, base: RodBase, values: Mapping[str, Matrix]
     ) -> PoseWrench:
-        """A load whose wrench on the section hangs on the pose of that, if only by its arm."""
+        """A load with a wrench on the section that depends on the section's pose, if only by its arm."""
         of_point = kernel.kernel
         parameters, data = (of_point.world_wrench.size1_in(number) for number in (2, 3))
         given = _Given()
@@ -149,13 +149,13 @@ class RidingBody:
         has_energy = is_dead_force or of_point.world_energy is not None
         on_section = _kernel(given, (parameters, data), wrench, energy if has_energy else None)
         stacked = ca.vertcat(stored(values), *given.values)
-        # Profiles are those of a load per length: at a point they are one.
+        # Profiles belong to loads per length: for a load at a point they are one.
         load = self._on_section(on_section, base, stacked, np.ones((data, 1)))
         scale = as_matrix(as_vector([point.factor])) if is_symbolic(point.factor) else point.factor
         return replace(load, scale=scale)
 
     def inertia(self, base: RodBase, motion: RodMotion) -> PoseWrench | None:
-        """Inertia of the body in motion as a load on its section; None of a body that has none."""
+        """Inertia of the body in motion as a load on its section; None for a body without inertia."""
         inertia = body_inertia(self.body)
         if is_zero(self.body.mass) and is_zero(inertia):
             return None
@@ -189,7 +189,7 @@ class RidingBody:
 
 @dataclass(frozen=True)
 class _Section:
-    """Symbols of a section that a kernel is written in, world axes."""
+    """Symbols of a section for a kernel, world axes."""
 
     position: ca.SX
     rotation: ca.SX
@@ -199,7 +199,7 @@ class _Section:
 
 
 class _Given:
-    """Numbers of a kernel: its constants, or symbols that stand for expressions, whose values are its parameters."""
+    """Numbers in a kernel: constants, or symbols for expressions, which become parameters of the kernel."""
 
     def __init__(self) -> None:
         self.symbols: list[ca.SX] = []
@@ -224,11 +224,11 @@ def _kernel(
     """A kernel of a section.
 
     Args:
-        given: numbers in it, which stand behind its parameters.
+        given: numbers in the kernel; their symbols follow its other parameters.
         sizes: number of the other parameters, and of the data.
         wrench: force and moment, world axes, 3×1 each.
-        energy: of the wrench; None where it has none.
-        rates: of the section, that the wrench depends on.
+        energy: energy of the wrench, 1×1, J; None if it has none.
+        rates: names of the rates of the section that the wrench depends on.
     """
     own, data = sizes
     section = _Section(

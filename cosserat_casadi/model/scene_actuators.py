@@ -1,6 +1,6 @@
 """Actuators of a scene as expressions of its unknowns and inputs: efforts, conjugates, cables of given length.
 
-Whether the forces of all actuators are gradients, so that the scene has a potential, follows from their conjugates.
+The conjugates also tell whether the forces of all actuators are gradients, so that the scene has a potential.
 
 See docs/theory.md, sections 6 and 8.
 """
@@ -47,38 +47,38 @@ class SceneActuators:
     shapes: Mapping[str, Shape]
 
     def state(self, name: str) -> tuple[Matrix, Matrix, Matrix]:
-        """Effort of an actuator, the length or volume that it works on, and the derivative of that with x."""
+        """Effort of an actuator, its conjugate length or volume, and the derivative of the conjugate by x."""
         actuator, conjugate = self.conjugate(name)
         member = EFFECTS[actuator.kind]
         effort = self._effort(actuator)
-        # The smooth complementarity leaves a slack cable a tension of either sign, as small as its smoothing.
+        # The smooth complementarity leaves a slack cable with a tension of either sign, as small as its smoothing.
         if member.may_go_slack(actuator):
             effort = ca.fmax(effort, 0.0)
         gradient = self._among_unknowns(actuator.rod, conjugate.gradient)
         return effort, conjugate.value, gradient.T
 
     def conjugate(self, name: str) -> tuple[scenes.Actuator, Conjugate]:
-        """An actuator, and the quantity that its effort works on."""
+        """An actuator, and the conjugate of its effort."""
         actuator = next(actuator for actuator in self.discrete.scene.actuators if actuator.name == name)
         return actuator, self._quantity(actuator).on(self.shapes[actuator.rod])
 
     def margin(self, actuator: scenes.Actuator) -> Matrix | None:
-        """How far an actuator is from the end of its law, 1×1; None where that has none."""
+        """Margin of an actuator to the end of its law, 1×1; None if its law has no end."""
         values = input_values(self.discrete.layout, actuator, self.inputs)
         margin: Matrix | None = EFFECTS[actuator.kind].margin(actuator, values)
         return margin
 
     def pull(self, name: str) -> Matrix:
-        """Generalised force of a unit of an actuator's effort on the unknowns, size×1."""
+        """Generalised force on the unknowns by a unit of an actuator's effort, size×1."""
         actuator, conjugate = self.conjugate(name)
         return self._among_unknowns(actuator.rod, conjugate.pull)
 
     def on_rod(self, rod: str) -> tuple[Actuation, ...]:
-        """Actuators on a rod: the efforts of the inputs, at the load factor, then the unknown tensions."""
+        """Actuators on a rod: efforts from inputs, at the load factor, then unknown tensions."""
         given = rod_actuation(self.discrete, rod, self.inputs)
         efforts = [scaled_effort(actuation, self.load_factor) for actuation in given]
         for cable in self.discrete.cables:
-            # An unknown tension is what its length asks for at this load factor: it is not scaled.
+            # An unknown tension already holds its length at this load factor: it is not scaled.
             if cable.tendon.rod == rod:
                 tension = self._unknown_tension(cable)
                 efforts.append(Actuation(self._quantity(cable.tendon), tension))
@@ -90,14 +90,14 @@ class SceneActuators:
         return {cable.tendon.name: self._cable_length(cable) for cable in self.discrete.cables}
 
     def _quantity(self, actuator: scenes.Actuator) -> ShapeQuantity:
-        """Quantity that the effort of an actuator works on, at the inputs."""
+        """Conjugate of the effort of an actuator, for the inputs."""
         values = input_values(self.discrete.layout, actuator, self.inputs)
         grid = self.discrete.rods[actuator.rod].grid
         quantity: ShapeQuantity = EFFECTS[actuator.kind].worked_on(actuator, grid, values)
         return quantity
 
     def _effort(self, actuator: scenes.Actuator) -> Matrix:
-        """Effort of an actuator: an input, or unknown where the scene prescribes its conjugate."""
+        """Effort of an actuator: an input, or an unknown if the scene prescribes its conjugate."""
         member = EFFECTS[actuator.kind]
         if member.prescribes_conjugate(actuator):
             cable = next(cable for cable in self.discrete.cables if cable.tendon.name == actuator.name)
@@ -127,7 +127,7 @@ class SceneActuators:
         )
 
     def _among_unknowns(self, rod: str, columns: Matrix) -> Matrix:
-        """Columns on the coordinates of one rod as columns on all unknowns, zero elsewhere."""
+        """Extend columns over the coordinates of one rod to all unknowns, with zeros elsewhere."""
         entries = self.discrete.unknowns.strain(rod)
         count = columns.shape[1]
         zeros = type(columns)
@@ -147,10 +147,10 @@ def actuators_have_potential(discrete: DiscreteScene, inputs: FloatArray) -> boo
     values = load_values(discrete.scene, discrete.layout, inputs)
     for actuator in discrete.scene.actuators:
         member = EFFECTS[actuator.kind]
-        # Inputs that are zero leave no entry: a direction of friction that is zero rubs nowhere.
+        # Inputs that are zero leave no entry: a pull of zero means no friction.
         numbers = {name: ca.sparsify(ca.DM(value)) for name, value in values[actuator.name].items()}
         if not member.prescribes_conjugate(actuator) and not numbers[member.effort].nnz():
-            # Without effort it does no work.
+            # An actuator without effort does no work.
             continue
         rod = discrete.rods[actuator.rod]
         quantity = member.worked_on(actuator, rod.grid, numbers)

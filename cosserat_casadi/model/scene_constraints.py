@@ -39,32 +39,32 @@ from cosserat_casadi.model.scene_rods import base_pose, unit_quaternion, written
 from cosserat_casadi.scene.constraint_records import JointRecord
 
 SUPPORT_WEIGHT = 2.0
-"""Step weight of the multipliers of a support: a rod that is pulled to a pose has many equilibria there, close by."""
+"""Step weight of the multipliers of a support: a rod pulled to a pose has many equilibria close to each other."""
 
 FORCE_WEIGHT = 0.1
-"""Step weight of other multipliers and of tensions: one unit bends a rod by about 0.1 rad; Euler's load is π² EI/ℓ²."""
+"""Step weight of other multipliers and of tensions: a unit bends a rod by about 0.1 rad; Euler's load is π² EI/ℓ²."""
 
 STILL = Compliance(power=1)
-"""A support of a rod that starts in the world yields in proportion."""
+"""Compliance of a support of a rod that starts in the world: it falls linearly."""
 
 ASSEMBLED = Compliance(power=3)
-"""Compliance of constraints that close an assembly: springs that hold rods that do not fit have to be stiff early.
+"""Compliance of constraints that close an assembly: springs between rods that do not fit have to be stiff early.
 """
 
 RELEASED = Compliance(power=3)
-"""Spring on the coordinate of a joint, in assemblies that close unloaded too: at first nothing else acts along it."""
+"""Spring on the coordinate of a joint, even in closed assemblies: at first nothing else acts along the coordinate."""
 
 
 SAME_AXIS = 1e-14
-"""Distance of two unit vectors that are one but for rounding."""
+"""Distance of unit vectors below which they differ by rounding alone."""
 
 
 class CarriedPlace(NamedTuple):
     """A place of a body that a joint holds.
 
     Attributes:
-        frame: of the body.
-        pose: of the place in the body; expressions where parameters set it.
+        frame: frame of the body.
+        pose: pose of the place in the body; expressions if parameters set it.
     """
 
     frame: FrameName
@@ -76,17 +76,17 @@ class PlacedConstraint:
     """A constraint of a scene.
 
     Attributes:
-        constraint: its mechanics.
-        rod: name of the rod whose section it holds; empty where it holds a body.
+        constraint: the mechanics of the constraint.
+        rod: name of the rod with the held section; empty if it holds a body.
         node: node of that section.
         carried: the body that it holds instead of a section, with the place in it.
         frame: the floating frame on the other side; None for the world.
-        joint: place of the joint in the scene's list; None of supports and clamped bases.
+        joint: index of the joint in the scene's list; None for supports and clamped bases.
         at_base: whether it holds a base to the pose that the scene, or an input, gives it in the world.
-        held_by_plane: directions that it leaves to the plane of its rods; None where it holds them all itself.
+        held_by_plane: directions that the plane of its rods already holds; None if it holds them all itself.
         where: path of the scene's table.
         what: the two sides in words.
-        compliance: how it yields on the way to the scene.
+        compliance: its compliance along the load path.
         step_weight: how much a unit of its multipliers counts in the length of a continuation step.
     """
 
@@ -110,7 +110,7 @@ class PlacedConstraint:
 
     @property
     def held_sizes(self) -> tuple[int, int]:
-        """Numbers of held displacements and rotations."""
+        """Numbers of held displacements and of held rotations."""
         held = self.constraint.held
         return held.positions.shape[1], held.rotations.shape[1]
 
@@ -123,7 +123,7 @@ class PlacedConstraint:
 
     @property
     def along_coordinate(self) -> int:
-        """Place, among the multipliers, of that along the coordinate."""
+        """Index, among the multipliers, of the multiplier along the coordinate."""
         coordinate = self.constraint.coordinate
         assert coordinate is not None, "asked for of a joint with a coordinate"
         # The last of the displacements, or of the rotations, which come last.
@@ -131,16 +131,16 @@ class PlacedConstraint:
 
     @property
     def closes_assembly(self) -> bool:
-        """Whether the constraint ties rods together, or a carried rod to the world, not a rod that starts there."""
+        """Whether the constraint ties rods together or a carried rod to the world; not for a rod that starts there."""
         return self.compliance is ASSEMBLED
 
 
 def written_constraints(
     placed: list[PlacedConstraint], nominal: scenes.Scene, scene: scenes.Scene
 ) -> list[PlacedConstraint]:
-    """Constraints of a scene with other numbers, or expressions, in the places that the scene gives.
+    """Constraints of a scene with other numbers, or expressions, at the poses of that scene.
 
-    They hold the directions that constraints of the nominal scene hold, in its scaling.
+    They hold the same directions as the constraints of the nominal scene, in its scaling.
 
     Args:
         placed: the constraints of the nominal scene.
@@ -158,7 +158,7 @@ def written_constraints(
         pose = after[entry.where]
         closing = entry.constraint.pose
         assert isinstance(closing, NumericPose)
-        # Where the nominal scene says by which way round a tip is turned, parameters do.
+        # The sign of a support's quaternion tells in which direction its tip is turned: it is kept.
         if entry.compliance is not STILL:
             pose = _nearer_pose(pose, closing)
         at = sections.get(entry.where, entry.constraint.at)
@@ -174,12 +174,12 @@ def written_constraints(
 
 
 def _nearer_pose(pose: NumericPose | Pose, other: NumericPose) -> NumericPose | Pose:
-    """A pose with that sign of its quaternion that is nearer to another pose: Q and −Q are one rotation."""
+    """A pose with the sign of its quaternion that is nearer to another pose: Q and −Q are one rotation."""
     if isinstance(pose, NumericPose):
         return pose if pose.quaternion @ other.quaternion >= 0 else NumericPose(pose.position, -pose.quaternion)
     near = ca.MX(ca.dot(pose.quaternion, other.quaternion))
     if not ca.symvar(near):
-        # The place alone depends on parameters.
+        # Only the position depends on parameters.
         return pose if float(ca.evalf(near)) >= 0 else Pose(pose.position, -pose.quaternion)
     return Pose(pose.position, ca.if_else(near < 0, -pose.quaternion, pose.quaternion))
 
@@ -195,7 +195,7 @@ def _axes(scene: scenes.Scene) -> dict[str, Matrix]:
         quaternion = unit_quaternion(record.orientation or (1.0, 0.0, 0.0, 0.0))
         if isinstance(record, JointRecord) and record.at_base:
             base = rods[record.rod]
-            # On another rod it is that of the carrying section already.
+            # The base on another rod has its axis in the carrying section already.
             quaternion = IDENTITY.quaternion if base.base.rod is not None else written_base_pose(base)[1]
         place = written_pose(np.zeros(3), quaternion)
         axes[where] = as_matrix(place.rotation).T @ as_matrix(as_vector(axis))
@@ -211,9 +211,9 @@ def _holders(scene: scenes.Scene) -> Iterator[tuple[str, TipHolder[Any], Any]]:
 
 
 def _turn_of_axis(before: Matrix, after: Matrix) -> Matrix | None:
-    """Shortest rotation from the line of an axis to another, both in the axes of the section, as a quaternion.
+    """Shortest rotation from the line of an axis to the line of another, in section axes, as a quaternion.
 
-    None where it is none. Neither the length of an axis nor its sign matters.
+    It is None if the lines agree. Neither the length of an axis nor its sign matters.
     """
     old = ca.DM(before)
     unit_old = old / ca.norm_2(old)
@@ -221,7 +221,7 @@ def _turn_of_axis(before: Matrix, after: Matrix) -> Matrix | None:
     if is_symbolic(new) and not ca.symvar(new):
         new = ca.evalf(new)
     unit_new = new / ca.norm_2(new)
-    # Of the two directions of the line, the nearer one: no turn is more than a right angle.
+    # The nearer one of the two directions of the line: no turn is more than a right angle.
     nearer = ca.if_else(ca.dot(unit_old, unit_new) < 0, -unit_new, unit_new)
     if not is_symbolic(nearer) and float(ca.norm_2(nearer - unit_old)) < SAME_AXIS:
         return None
@@ -230,7 +230,7 @@ def _turn_of_axis(before: Matrix, after: Matrix) -> Matrix | None:
 
 
 def decisive_axes(unloaded: UnloadedScene) -> set[int]:
-    """Joints whose axis or orientation decides which directions others hold: several of one plane."""
+    """Indices of joints with an axis or orientation that decides which directions other joints of a plane hold."""
     scene = unloaded.scene
     closed = bool(closing_joints(unloaded))
     decisive = {
@@ -246,7 +246,7 @@ def decisive_axes(unloaded: UnloadedScene) -> set[int]:
 
 
 def _hinges_below(unloaded: UnloadedScene, rod: str) -> Iterator[int]:
-    """Places in the scene's list of hinges at the bases of a rod and of its carriers, and of joints of bodies below."""
+    """Indices in the scene's list of hinges at the bases of a rod and its carriers, and of joints of bodies below."""
     if unloaded.starts_on_body(rod):
         yield from (index for index, joint in enumerate(unloaded.scene.joints) if joint.body or joint.carries)
     carried: str | None = rod
@@ -260,14 +260,14 @@ def _hinges_below(unloaded: UnloadedScene, rod: str) -> Iterator[int]:
 
 
 def check_directions(placed: list[PlacedConstraint], unloaded: UnloadedScene) -> None:
-    """Refuse numbers with which constraints hold other directions than the constraints of the scene hold.
+    """Refuse numbers with which constraints hold other directions than in the nominal scene.
 
     Args:
         placed: the constraints of the nominal scene.
         unloaded: the scene with other numbers.
 
     Raises:
-        SceneError: with every constraint that numbers take out of the plane of its rods, or into it.
+        SceneError: numbers take a constraint out of the plane of its rods, or into it; every such constraint is named.
     """
     problem = "holds other directions with these parameters, which take it out of the plane of its rods, or into it"
     refuse(
@@ -292,32 +292,32 @@ def _given_places(scene: scenes.Scene) -> dict[str, NumericPose | Pose]:
             )
     for i, rod in enumerate(scene.rods):
         if rod.base.rod is not None:
-            # The scene gives the base in the section; the constraint wants the section in the frame of the base.
+            # The scene gives the base in the section; the constraint needs the section in the frame of the base.
             places[_base_path(scene, i)] = written_pose(*written_base_pose(rod)).inverse
     return places
 
 
 def _base_path(scene: scenes.Scene, index: int) -> str:
-    """Path of the table that says how the base of a rod is held: the table of a joint, or of the rod."""
+    """Path of the table that describes how the base of a rod is held: a joint's table, or the rod's."""
     joint = scene.base_joints.get(scene.rods[index].name)
     return f"rods[{index}].base" if joint is None else f"joints[{joint}]"
 
 
 def _carried_path(where: str) -> str:
-    """Path of the place of a joint in the body that it carries."""
+    """Path of the table with the place of a joint in the carried body."""
     return f"{where}.carries"
 
 
 def placed_constraints(unloaded: UnloadedScene) -> list[PlacedConstraint]:
     """The constraints of a scene in the order of their multipliers.
 
-    Supports of rods that start in the world, bases of carried rods, joints, then supports of carried rods. Joints of
-    bodies that ride on sections are none: their poses follow.
+    The order is: supports of rods that start in the world, bases of carried rods, joints, supports of carried rods.
+    Joints of riding bodies are not constraints: the poses of these bodies follow from their sections.
     """
     scene = unloaded.scene
     supports = [_support(unloaded, i) for i in range(len(scene.supports))]
     supports += [_joint_in_world(unloaded, i) for i, joint in enumerate(scene.joints) if _is_in_world(joint)]
-    # A support of a rod that starts in the world couples no rods: it stands next to the strains in x.
+    # A support of a rod that starts in the world couples no rods: its multipliers follow the strains in x.
     still = [placed for placed in supports if not placed.closes_assembly]
     carried = [placed for placed in supports if placed.closes_assembly]
     bases = [_base(unloaded, rod) for rod in unloaded.carried]
@@ -340,7 +340,7 @@ class _Section:
     def held_to(
         self, target: NumericPose, directions: HeldDirections, frame: FrameName | None, words: tuple[str, str]
     ) -> PlacedConstraint:
-        """The constraint that holds the section to a pose in a frame; ``words``: its path and its two sides."""
+        """The constraint of the section to a pose in a frame; ``words``: its path and its two sides."""
         discrete_rod = self.unloaded.rods[self.rod]
         where, what = words
         return PlacedConstraint(
@@ -355,9 +355,9 @@ class _Section:
         )
 
     def nearer_sign(self, target: NumericPose, frame: FrameName | None) -> NumericPose:
-        """A pose in a frame with that sign of its quaternion that is nearer to the section.
+        """A pose in a frame with the sign of its quaternion that is nearer to the section.
 
-        Q and −Q are one rotation; from the farther one the section would be turned by more than half a turn.
+        Q and −Q are one rotation; the farther sign would turn the section by more than half a turn.
         """
         world_target = target if frame is None else self.unloaded.frames[frame].start.then(target)
         quaternion = self.unloaded.section(self.rod, self.at).quaternion
@@ -367,7 +367,7 @@ class _Section:
 
 
 def _support(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
-    """The tip of a rod at a pose in the world."""
+    """The support of a rod's tip at a pose in the world."""
     support = unloaded.scene.supports[index]
     rod = support.rod
     words = (f"supports[{index}]", f"the tip of {rod!r} at its support")
@@ -376,12 +376,12 @@ def _support(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
 
 
 def _is_in_world(joint: scenes.Joint) -> bool:
-    """Whether a joint holds a section in the world that is no base."""
+    """Whether a joint holds a section other than a base in the world."""
     return joint.carries is None and joint.body is None and not joint.holds_base
 
 
 def _joint_in_world(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
-    """A section of a rod at a joint in the world."""
+    """The joint of a rod's section in the world."""
     joint = unloaded.scene.joints[index]
     words = (f"joints[{index}]", f"{_section_in_words(joint)} of {joint.rod!r} at its joint in the world")
     section = _Section(unloaded, joint.rod, joint.at)
@@ -392,7 +392,7 @@ def _joint_in_world(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
 def _held_in_world(
     section: _Section, record: scenes.Support | scenes.Joint, directions: HeldDirections, words: tuple[str, str]
 ) -> tuple[PlacedConstraint, FloatArray | None]:
-    """A section of a rod at the place of its record in the world; ``words``: its path and its two sides.
+    """The constraint of a rod's section to the pose of a record in the world; ``words``: its path and its two sides.
 
     Returns:
         the constraint, and the normal of the plane that the rod stays in, in the axes of the place; None in space.
@@ -405,21 +405,21 @@ def _held_in_world(
     held_by_plane = None
     if _held_in_plane(unloaded, record, target):
         normal = target.rotation.T @ unloaded.base(rod).rotation[:, 1]
-        # Directions that turn with the pose are given in its axes, others in those of the base.
+        # Directions that turn with the pose are given in its axes, others in the axes of the base.
         own_normal = normal if directions.turn_with_pose else NORMAL
         held_by_plane = across_plane(directions, own_normal)
         directions = in_plane(directions, own_normal)
     if floats:
         placed = section.held_to(section.nearer_sign(target, None), directions, None, words)
         return replace(placed, held_by_plane=held_by_plane), normal
-    # The scene's own sign of the quaternion says by which way round the tip is to be turned.
+    # The sign of the quaternion in the scene tells in which direction the tip is to be turned.
     placed = section.held_to(target, directions, None, words)
     placed = replace(placed, compliance=STILL, step_weight=SUPPORT_WEIGHT, held_by_plane=held_by_plane)
     return placed, normal
 
 
 def _held_in_plane(unloaded: UnloadedScene, record: scenes.Support | scenes.Joint, target: NumericPose) -> bool:
-    """Whether a rod stays in one plane that its place in the world lies in."""
+    """Whether a rod stays in a plane that contains its held pose in the world."""
     plane = unloaded.plane(record.rod)
     if plane is None:
         return False
@@ -428,14 +428,14 @@ def _held_in_plane(unloaded: UnloadedScene, record: scenes.Support | scenes.Join
 
 
 def _section_in_words(joint: scenes.Joint) -> str:
-    """The jointed section."""
+    """The section of a joint in words."""
     if joint.holds_base:
         return "the base"
     return "the tip" if joint.at == 1.0 else f"X = {joint.at:g}"
 
 
 def _base(unloaded: UnloadedScene, rod: scenes.Rod) -> PlacedConstraint:
-    """The base of a rod on a section of another."""
+    """The constraint of a rod's base to a section of another rod."""
     carrier = rod.base.rod
     assert carrier is not None
     frame = FrameName("rod", rod.name)
@@ -443,7 +443,7 @@ def _base(unloaded: UnloadedScene, rod: scenes.Rod) -> PlacedConstraint:
     words = (_base_path(unloaded.scene, index), f"the base of {rod.name!r} on {carrier!r}")
     joint = unloaded.base_joint(rod.name)
     section = _Section(unloaded, carrier, rod.base.at)
-    # The scene gives the base in the section; the constraint wants the section in the frame of the base.
+    # The scene gives the base in the section; the constraint needs the section in the frame of the base.
     section_in_base = NumericPose(*base_pose(rod)).inverse
     target = section.nearer_sign(section_in_base, frame)
     if joint is None:
@@ -451,7 +451,7 @@ def _base(unloaded: UnloadedScene, rod: scenes.Rod) -> PlacedConstraint:
     number, rotation = joint
     record = unloaded.scene.joints[number]
     placed = section.held_to(target, JOINT_KINDS[record.kind].held(record, rotation), frame, words)
-    # The base moves along the axis in the section, and so the section against it in the base.
+    # The base moves along the axis in the section; so the section moves in the opposite direction in the base.
     return _with_coordinate(placed, unloaded, number, -rotation)
 
 
@@ -462,14 +462,14 @@ def _with_coordinate(
     rotation: FloatArray,
     normal: FloatArray | None = None,
 ) -> PlacedConstraint:
-    """A joint with its coordinate, where something acts along it.
+    """A joint with its coordinate, if something acts along it.
 
     Args:
         placed: the constraint without the coordinate.
         unloaded: the scene.
-        index: place of the joint in the scene's list.
+        index: index of the joint in the scene's list.
         rotation: turns the axes of the section into the axes of the joint, shape (3, 3).
-        normal: unit normal of the plane, in the axes of the section, that its rod stays in; None of a rod in space.
+        normal: unit normal, in the axes of the section, of the plane in which its rod stays; None for a rod in space.
 
     Raises:
         SceneError: a rod in a plane would have to leave it.
@@ -488,12 +488,12 @@ def _with_coordinate(
 
 
 def _joint(unloaded: UnloadedScene, index: int, normal: FloatArray | None) -> PlacedConstraint:
-    """A section of a rod at a body, a base in the world, or a body at another one or in the world.
+    """The joint of a rod's section to a body, of a base to the world, or of a body to another body or the world.
 
     Args:
         unloaded: the scene.
-        index: place of the joint in the scene's list.
-        normal: of the plane that others keep its body in, in the axes of the section or place, shape (3,), or None.
+        index: index of the joint in the scene's list.
+        normal: normal (3,), in the axes of section or place, of the plane in which others keep its body; or None.
     """
     joint = unloaded.scene.joints[index]
     if joint.carries is not None:
@@ -501,7 +501,7 @@ def _joint(unloaded: UnloadedScene, index: int, normal: FloatArray | None) -> Pl
     words = (f"joints[{index}]", f"{_section_in_words(joint)} of {joint.rod!r} at {joint.body or 'its place'!r}")
     section = _Section(unloaded, joint.rod, joint.at)
     if joint.at_base:
-        # Counted from where the scene, or an input, puts the base.
+        # The joint's coordinate counts from the pose that the scene, or an input, gives the base.
         base = unloaded.base_joint(joint.rod)
         assert base is not None
         placed = section.held_to(IDENTITY, JOINT_KINDS[joint.kind].held(joint, base[1]), None, words)
@@ -517,14 +517,14 @@ def _joint(unloaded: UnloadedScene, index: int, normal: FloatArray | None) -> Pl
         held_by_plane = across_plane(directions)
         directions = in_plane(directions)
     elif len(coplanar) > 1:
-        # Of planar rods that hold one body in their plane, only the first keeps it there.
+        # If several planar rods hold a body in their plane, only the first one keeps it there.
         directions = upright(directions)
     placed = replace(section.held_to(target, directions, frame, words), held_by_plane=held_by_plane)
     return _with_coordinate(placed, unloaded, index, target.rotation, NORMAL if in_a_plane else None)
 
 
 def _joint_of_bodies(unloaded: UnloadedScene, index: int, normal: FloatArray | None) -> PlacedConstraint:
-    """A body at another body, or in the world."""
+    """The joint of a body to another body, or to the world."""
     joint = unloaded.scene.joints[index]
     assert joint.carries is not None, "asked for of a joint that carries a body"
     carried = FrameName("body", joint.carries.body)
@@ -532,7 +532,7 @@ def _joint_of_bodies(unloaded: UnloadedScene, index: int, normal: FloatArray | N
     target = place_of(joint)
     place = place_of(joint.carries)
     carrier = IDENTITY if frame is None else unloaded.frames[frame].start
-    # Q and −Q are one rotation: the sign of the place that is nearer to where the joint wants it.
+    # Q and −Q are one rotation: the place gets the sign that is nearer to its pose in the closed joint.
     wanted = carrier.then(target)
     if unloaded.frames[carried].start.then(place).quaternion @ wanted.quaternion < 0:
         target = NumericPose(target.position, -target.quaternion)
@@ -556,14 +556,14 @@ def _joint_of_bodies(unloaded: UnloadedScene, index: int, normal: FloatArray | N
 
 
 def _coplanar(unloaded: UnloadedScene, joint: scenes.Joint) -> Iterator[scenes.Joint]:
-    """Joints of the same body on planar rods of the same plane, in their order; none off a planar rod."""
+    """Joints of this joint's body with planar rods of one plane, in their order; none if its rod is not planar."""
     plane = unloaded.plane(joint.rod) if joint.rod else None
     if joint.body is None or plane is None or not _moves_in_plane(joint) or unloaded.starts_on_body(joint.rod):
         return
     for candidate in unloaded.scene.joints:
         if not candidate.rod or candidate.body != joint.body or not _moves_in_plane(candidate):
             continue
-        # All of what the base of a rod on the body has is held there.
+        # A rod that starts on the body has its base fixed there, and does not hold the body.
         if unloaded.starts_on_body(candidate.rod):
             continue
         if _shares_plane(unloaded, joint, plane, candidate):
@@ -571,19 +571,19 @@ def _coplanar(unloaded: UnloadedScene, joint: scenes.Joint) -> Iterator[scenes.J
 
 
 def _moves_in_plane(joint: scenes.Joint) -> bool:
-    """Whether a joint leaves its body in the x–z plane of the rod: a hinge about its normal, a slide along it."""
+    """Whether a joint keeps its body in the rod's x–z plane, as a hinge about its normal or a slide along it does."""
     return keeps_plane(JOINT_KINDS[joint.kind].directions(joint))
 
 
 def _shares_plane(unloaded: UnloadedScene, joint: scenes.Joint, plane: NumericPose, candidate: scenes.Joint) -> bool:
-    """Whether two joints hold a body in one plane, in the world and in the body alike."""
+    """Whether two joints hold a body in the same plane, both in the world and in the body."""
     second = unloaded.plane(candidate.rod)
     length = unloaded.records[joint.rod].length
     if second is None or not same_plane(plane, second, length):
         return False
     first_joint = place_of(joint)
     second_joint = place_of(candidate)
-    # Normals may be opposite, if they are so in the world and in the body alike.
+    # Normals may be opposite if they are opposite both in the world and in the body.
     in_world = float(plane.rotation[:, 1] @ second.rotation[:, 1])
     in_body = float(first_joint.rotation[:, 1] @ second_joint.rotation[:, 1])
     if in_world * in_body <= 0:

@@ -8,7 +8,7 @@ The equations of docs/theory.md, sections 2 to 8, in the order of the unknowns:
     joints        balance along every coordinate that is an unknown = 0
     cables        length, or slack = 0
     stops         way to it, or nothing pushed with = 0
-    flows         at rest none, w = 0
+    flows at rest w = 0
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class SceneEquations:
 
     @property
     def _flow_rows(self) -> list[Matrix]:
-        """Rows of the flows: w, which is counted from rest; in motion theirs are none of statics."""
+        """Rows of the flows: w, which counts from rest; in motion statics has no rows for them."""
         flows = [self.system.arguments.x[own] for _, own in self.system.discrete.unknowns.of_kind(BlockKind.FLOW)]
         return flows if self.system.arguments.motion is None else [ca.DM(*flow.shape) for flow in flows]
 
@@ -56,14 +56,14 @@ class SceneEquations:
     def jacobian(self) -> Matrix:
         """∂ residual / ∂x from its structure, exact for the discrete model; sparse by rods."""
         discrete = self.system.discrete
-        # The literal linear system of the report has no variations of its own (theory, 4): it is differentiated.
+        # The literal linear system of the report has no variations (docs/theory.md, section 4): it is differentiated.
         if any(rod.discretisation.transport == "permuted" for rod in discrete.rods.values()):
             return ca.jacobian(self.residual, self.system.arguments.x)
         flows = discrete.unknowns.count(BlockKind.FLOW)
         if discrete.constraints or discrete.cables or discrete.frames or discrete.pairs:
             jacobian = self.assembly.jacobian
         else:
-            # Rods that nothing couples do not meet in any row.
+            # Rods that nothing couples have no row in common.
             tangents = [tangent.jacobian for tangent in self.system.tangents.values()]
             jacobian = ca.diagcat(*tangents, ca.DM(flows, flows))
         if self.system.arguments.motion is None and self.system.rubbing:
@@ -74,9 +74,9 @@ class SceneEquations:
 
 
 def by_friction(system: System, arguments: Sequence[Matrix]) -> list[Matrix]:
-    """Derivatives of the residual with arguments by the change of friction between rods, and of drag on bodies.
+    """Derivatives of the residual by arguments through the friction between rods and the drag on bodies.
 
-    The equations are linear in friction and drag, and at fixed friction their derivatives are as for any dead load.
+    The equations are linear in friction and drag; derivatives at fixed friction are those of any dead load.
     """
     frictions = [friction for terms in system.rubbing for friction in terms.frictions]
     loads = ca.vertcat(*map(ca.vec, frictions))

@@ -1,4 +1,4 @@
-"""A rod of the scene as the record the mechanics reads."""
+"""Conversion of a rod of the scene to the properties that the mechanics reads."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ from cosserat_casadi.rod.section import hooke as hooke_tensor
 from cosserat_casadi.scene.material_records import INCOMPRESSIBLE
 
 SMALLEST_FORCE = 1e-150
-"""Least EI/ℓ² that can be computed with, N: its square is still a number."""
+"""Least EI/ℓ² that is computed with, N: its square does not underflow."""
 
 LARGEST_FORCE = 1e150
-"""Largest EI/ℓ² that can be computed with, N."""
+"""Largest EI/ℓ² that is computed with, N."""
 
 
 def rod_properties(rod: scenes.Rod, nominal: RodProperties | None = None) -> RodProperties:
@@ -41,7 +41,7 @@ def rod_properties(rod: scenes.Rod, nominal: RodProperties | None = None) -> Rod
 
     Args:
         rod: the rod, whose numbers may be expressions of parameters.
-        nominal: the rod with the scene's own numbers, which scales the equations; None where ``rod`` is that.
+        nominal: the rod with the scene's own numbers, which scales the equations; None if it is ``rod``.
 
     Raises:
         SceneError: the rod is so long or short, so stiff or soft, that its equations cannot be computed with.
@@ -75,7 +75,7 @@ def rod_properties(rod: scenes.Rod, nominal: RodProperties | None = None) -> Rod
 
 
 def fixed_masses(scene: scenes.Scene, rod: str) -> tuple[FixedMass, ...]:
-    """Masses of the disks on a rod, as of solid cylinders."""
+    """Masses and inertias of the disks on a rod, taken as solid cylinders."""
     masses = []
     for row in scene.disks:
         if row.rod != rod or is_zero(row.mass):
@@ -87,8 +87,8 @@ def fixed_masses(scene: scenes.Scene, rod: str) -> tuple[FixedMass, ...]:
 
 
 def _refuse_out_of_range(properties: RodProperties) -> None:
-    """Refuse a rod whose EI/ℓ² overflows or vanishes: forces are measured by it."""
-    # Division by the length twice: its square alone may underflow.
+    """Refuse a rod with an EI/ℓ² that overflows or underflows: it is the unit of forces."""
+    # Two divisions by the length: the square of the length alone may underflow.
     with np.errstate(all="ignore"):
         force = np.float64(properties.bending_stiffness) / properties.length / properties.length
     if SMALLEST_FORCE <= force <= LARGEST_FORCE:
@@ -107,7 +107,7 @@ def base_pose(rod: scenes.Rod) -> tuple[FloatArray, FloatArray]:
 
 
 def written_base_pose(rod: scenes.Rod) -> tuple[Numbers, Numbers]:
-    """World position (3,) and quaternion (4,) of the rod's base, whose numbers may be expressions of parameters."""
+    """World position (3,) and quaternion (4,) of the rod's base; entries may be expressions of parameters."""
     position = as_vector(rod.base.position)
     if rod.base.tangent is not None:
         return position, quaternion_from_tangent(rod.base.tangent)
@@ -115,7 +115,7 @@ def written_base_pose(rod: scenes.Rod) -> tuple[Numbers, Numbers]:
 
 
 def unit_quaternion(entries: Sequence[Scalar]) -> Numbers:
-    """A quaternion of the scene, shape (4,): of expressions, as of an input, the norm does not matter."""
+    """A quaternion of the scene, shape (4,), which has norm 1; expressions are scaled to norm 1."""
     quaternion = as_vector(entries)
     if is_symbolic(quaternion):
         return quaternion / ca.sqrt(ca.sumsqr(quaternion))
@@ -132,7 +132,7 @@ def _coefficients(component: Scalar | Sequence[Scalar]) -> tuple[Scalar, ...]:
 
 
 def _shared(field: Field, *sizes: Any) -> Field:
-    """A field of sections that are all alike, if no size varies: where it is an expression, one stands for all."""
+    """A field of sections; if no size varies along the rod and it is an expression, one row for all sections."""
     if any(isinstance(size, tuple) for size in sizes):
         return field
 
@@ -144,7 +144,7 @@ def _shared(field: Field, *sizes: Any) -> Field:
 
 
 def _alike(numbers: Sequence[Scalar]) -> Field:
-    """Numbers that all sections have: one row stands for all where one is an expression."""
+    """A field of numbers that are the same for all sections; one row for all sections if one is an expression."""
     row = as_vector(numbers)
     if is_symbolic(row):
         return lambda X: row.T
@@ -155,7 +155,7 @@ def _hooke(rod: scenes.Rod) -> Field:
     if rod.stiffness_matrix is not None:
         return _alike([row[i] for i, row in enumerate(rod.stiffness_matrix)])
     if rod.stiffness is not None:
-        # A stiffness that is not given belongs to no strain of the rod.
+        # A stiffness that is left out belongs to a strain that the rod does not admit.
         return _direct(rod.stiffness)
     assert rod.material is not None
     assert rod.section is not None
@@ -166,7 +166,7 @@ def _hooke(rod: scenes.Rod) -> Field:
 
 
 def _beyond_hooke(rod: scenes.Rod, hooke: Field) -> EnergyBeyondHooke | None:
-    """Elastic energy that the Hooke tensor does not hold; None of a rod that is linear.
+    """Elastic energy beyond the energy of the Hooke tensor; None for a linear rod.
 
     Raises:
         SceneError: the law of its material does not fit its section.
@@ -183,7 +183,7 @@ def _beyond_hooke(rod: scenes.Rod, hooke: Field) -> EnergyBeyondHooke | None:
 def shear_modulus(material: scenes.Material) -> Scalar:
     """G of an isotropic material: its shear modulus, or E / (2 (1 + ν)) from Poisson's ratio.
 
-    A material that has neither keeps its volume: G = E/3.
+    A material with neither is incompressible: G = E/3.
     """
     if material.shear_modulus is not None:
         return material.shear_modulus
@@ -199,7 +199,7 @@ def _direct(given: scenes.Stiffness | scenes.Damping) -> Field:
 
 
 def _of_sections(record: scenes.Section, quantity: Callable[[SectionShape], Numbers]) -> Field:
-    """A quantity of the areas and second moments of the sections, as a field."""
+    """A field that is a function of the areas and second moments of the sections."""
     shape = SHAPES[record.shape]
     return _shared(lambda X: quantity(shape.shape(sizes_along(record, X))), *sizes_of(record).values())
 
@@ -225,7 +225,7 @@ def _rotary_inertia(rod: scenes.Rod) -> Field | None:
 
 
 def _area(rod: scenes.Rod) -> Field | None:
-    """Area of the sections (k,); None of a rod that is given by its stiffness."""
+    """Area of the sections, shape (k,), m²; None for a rod that is given by its stiffness."""
     if rod.section is None:
         return None
     section = rod.section
@@ -233,7 +233,7 @@ def _area(rod: scenes.Rod) -> Field | None:
 
 
 def _diameter(rod: scenes.Rod) -> Field | None:
-    """Outer diameter of round sections (k,); None of others."""
+    """Outer diameter of round sections, shape (k,), m; None for other shapes."""
     if rod.section is None or rod.section.radius_key is None:
         return None
     radius = linear(getattr(rod.section, rod.section.radius_key))
@@ -256,7 +256,7 @@ def _damping(rod: scenes.Rod, hooke: Field) -> Field | None:
 
 
 def _branches(rod: scenes.Rod) -> tuple[MaxwellBranch, ...]:
-    """Maxwell branches beside the elasticity of a rod."""
+    """Maxwell branches in parallel with the elasticity of a rod."""
     if rod.damping is None:
         return ()
     branches = []

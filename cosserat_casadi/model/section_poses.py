@@ -1,8 +1,8 @@
 """World poses of several sections of a rod, and their derivatives with the unknowns.
 
 A section between nodes lies on the polynomials through the values at the nodes (:func:`interpolation_weights`); a
-quaternion is scaled to unit length there. Derivatives follow from the variations of the rod's fields, as the Jacobian
-of the residual does: automatic differentiation would carry every section through the rod again.
+quaternion is scaled to unit length there. Derivatives follow from the variations of the rod's fields, as in the
+Jacobian of the residual: automatic differentiation would pass through the whole rod again for every section.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class SectionPoses:
     Attributes:
         system: rods and frames in symbols or numbers.
         rod: name of the rod.
-        weights: of the values at its nodes, nodes×k.
+        weights: weights of the values at its nodes, nodes×k.
     """
 
     system: System
@@ -57,18 +57,18 @@ class SectionPoses:
     @cached_property
     def quaternions(self) -> Matrix:
         """Unit quaternions world_Q_section, 4×k."""
-        # Between nodes an interpolated quaternion is of unit length to the accuracy of the grid only.
+        # Between nodes the norm of an interpolated quaternion is 1 only to the accuracy of the grid.
         unit = self._interpolated / ca.repmat(self._lengths, 4, 1)
         base_quaternions = ca.repmat(self.system.base(self.rod).quaternion, 1, self.count)
         return quaternion_product(ca.densify(base_quaternions), unit)
 
     @cached_property
     def by_unknowns(self) -> Matrix:
-        """∂[position; quaternion]/∂x of one section after another, 7k×size, where they are written in symbols x."""
+        """∂[position; quaternion]/∂x of one section after another, 7k×size; x must be symbols."""
         discrete = self.system.discrete
         floats = discrete.unloaded.floating_base(self.rod) is not None
         literal = discrete.rods[self.rod].discretisation.transport == "permuted"
-        # A floating base moves with unknowns of its own, and the literal system has no variations.
+        # Here a floating base has its own unknowns, and the literal system has no variations.
         if floats or literal:
             return ca.densify(ca.jacobian(ca.vec(self.stacked), self.system.arguments.x))
         strains = discrete.unknowns.strain(self.rod)
@@ -86,7 +86,7 @@ class SectionPoses:
         return ca.sqrt(ca.sum1(self._interpolated * self._interpolated))
 
     def _by_strains(self) -> Matrix:
-        """Derivatives with the strain coordinates of the rod, 7k×n."""
+        """Derivatives by the strain coordinates of the rod, 7k×n."""
         tangent = self.system.tangents[self.rod]
         rotation = self.system.base(self.rod).rotation
         moved = ca.vertsplit(tangent.displacement(self.weights), 3)
@@ -129,7 +129,7 @@ def _inside(breaks: tuple[Scalar, ...], element: int, X: Matrix) -> Matrix | int
     """1 where X lies in the element, which owns its tip-side end, else 0."""
     above: Matrix | int = 1
     below: Matrix | int = 1
-    # The first and the last element hold what lies before and beyond the rod: their polynomials extrapolate.
+    # The polynomials of the first and the last element extrapolate beyond the ends of the rod.
     if element > 0:
         above = breaks[element] < X
     if element + 2 < len(breaks):

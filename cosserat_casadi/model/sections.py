@@ -24,17 +24,17 @@ from cosserat_casadi.scene.rod_records import SECTIONS, SectionRecord
 RecordType = TypeVar("RecordType", bound=SectionRecord)
 
 Sizes = Mapping[str, Numbers]
-"""Sizes of k sections by the keys of their record, shape (k,) each, m; expressions where parameters set them."""
+"""Sizes of k sections by the keys of their record, shape (k,) each, m; expressions if parameters set them."""
 
 
 Fibre = tuple[Matrix, Matrix, Matrix]
-"""Place of a fibre in the section, x and y, m, and its area, m²."""
+"""Position x, y of a fibre in the section, m, and its area, m²."""
 
 RADIAL_POINTS = 3
 """Points along the radius of a round section: exact up to its eleventh power."""
 
 DIRECTIONS = 12
-"""Directions in which points of a round section lie: exact for products of powers of x and y up to a sum of 11."""
+"""Number of directions with points in a round section: exact for products of powers of x and y up to a sum of 11."""
 
 POINTS_ACROSS = 6
 """Points across each side of a rectangle: exact up to the eleventh power of x and of y."""
@@ -54,14 +54,14 @@ class CrossSection(Kind, ABC, Generic[RecordType]):
     def fibres(self, sizes: Mapping[str, Matrix]) -> list[Fibre] | None:
         """Points of a quadrature over the section, x, y and area of each, m and m², symmetric about both axes.
 
-        None for a section of linear materials alone.
+        None for a shape that only linear materials may have.
         """
         return None
 
     def half_widths(self, sizes: Sizes) -> tuple[Numbers, Numbers] | None:
-        """Half of the widths along x and y as a page draws them, m; of a round section its radius.
+        """Half of the widths along x and y for drawings, m; for a round section its radius, twice.
 
-        None for a section that is drawn by its centre line alone.
+        None for a shape that is drawn by its centre line alone.
         """
         key = self.record.radius_key
         return None if key is None else (sizes[key], sizes[key])
@@ -72,7 +72,7 @@ SHAPES = CrossSection.kinds
 
 
 def sizes_of(record: SectionRecord) -> dict[str, Any]:
-    """The sizes of a section, each constant or of base and tip, by their keys."""
+    """The sizes of a section by their keys, each constant or a pair for base and tip."""
     return {key: getattr(record, key) for key in type(record).model_fields if key not in ("shape", "shear_correction")}
 
 
@@ -81,7 +81,7 @@ def linear(value: Scalar | Sequence[Scalar]) -> Field:
     if isinstance(value, int | float):
         return lambda X: np.full(X.shape[0], float(value))
     if is_symbolic(value):
-        # One stands for all abscissae.
+        # One row stands for all abscissae.
         expression: Numbers = value
         return lambda X: expression
     assert isinstance(value, tuple)
@@ -97,7 +97,7 @@ def sizes_along(record: scenes.Section, X: Numbers) -> dict[str, Numbers]:
 def half_widths_along(record: scenes.Section | None, X: FloatArray) -> tuple[FloatArray, FloatArray] | None:
     """Half of the widths along x and y at abscissae, shape (k,) each, m; of a round section its radius.
 
-    None without a section, or of one that is drawn by its centre line alone.
+    None without a section, or for a section that is drawn by its centre line alone.
     """
     if record is None:
         return None
@@ -157,7 +157,7 @@ class RectangleSection(CrossSection[scenes.Rectangle]):
         return section.rectangle(sizes["width"], sizes["height"])
 
     def fibres(self, sizes: Mapping[str, Matrix]) -> list[Fibre]:
-        """Gauss points across its width times those across its height."""
+        """Product of Gauss points across the width and across the height."""
         points, weights = gauss_legendre(POINTS_ACROSS)
         width, height = sizes["width"], sizes["height"]
         return [
@@ -172,7 +172,7 @@ class RectangleSection(CrossSection[scenes.Rectangle]):
 
 
 def _round_fibres(outer: Matrix, inner: Matrix) -> list[Fibre]:
-    """Points on rings between two radii, m, Gauss points in the square of the radius, all of one ring alike."""
+    """Points on rings between two radii, m: Gauss points in the square of the radius, equal areas in one ring."""
     points, weights = gauss_legendre(RADIAL_POINTS)
     squares = outer**2 - inner**2
     fibres = []
@@ -180,7 +180,7 @@ def _round_fibres(outer: Matrix, inner: Matrix) -> list[Fibre]:
         radius = (inner**2 + float(point) * squares) ** 0.5
         area = np.pi * float(weight) / DIRECTIONS * squares
         for direction in range(DIRECTIONS):
-            # Half a step off the axes, so that the points of all four quadrants mirror each other.
+            # Half a step off the axes, so that the points of the four quadrants are mirror images.
             angle = 2 * np.pi * (direction + 0.5) / DIRECTIONS
             fibres.append((float(np.cos(angle)) * radius, float(np.sin(angle)) * radius, area))
     return fibres

@@ -1,4 +1,4 @@
-"""Named values stacked into one vector: what the inputs of a model and its parameters have in common."""
+"""Named values stacked into one vector: common base of the inputs and the parameters of a model."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ class StackedLayout(Generic[EntryType]):
     entries: tuple[EntryType, ...]
 
     what: ClassVar[str]
-    """Such a value in words, with its article; ``several`` is its plural."""
+    """Word for such a value, with its article; ``several`` is its plural."""
 
     several: ClassVar[str]
 
     def __getstate__(self) -> dict[str, Any]:
-        """The state that pickle and copy take along: the values, without the symbol that is built from them."""
+        """The state for pickle and copy: the values, without the symbol that is built from them."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @cached_property
@@ -59,7 +59,7 @@ class StackedLayout(Generic[EntryType]):
 
     @cached_property
     def defaults(self) -> tuple[FloatArray, ...]:
-        """The scene's value of each, shape (components, k)."""
+        """The scene's value of each by name, shape (components, k)."""
         return tuple(entry.default for entry in self.entries)
 
     @cached_property
@@ -79,7 +79,7 @@ class StackedLayout(Generic[EntryType]):
         return slices
 
     def __iter__(self) -> Iterator[tuple[EntryType, slice]]:
-        """The values with their slices of the stacked vector."""
+        """Pairs of a value and its slice of the stacked vector."""
         return zip(self.entries, self.slices.values(), strict=True)
 
     def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:
@@ -96,7 +96,7 @@ class StackedLayout(Generic[EntryType]):
         """
         given = dict(values or {})
         problems = list(self._unknown_names(given))
-        # An empty part: a model without inputs has a vector of no entries, of numbers all the same.
+        # The empty part makes the vector of a model without inputs an array of numbers too.
         parts = [np.zeros(0)]
         for entry in self.entries:
             try:
@@ -111,14 +111,14 @@ class StackedLayout(Generic[EntryType]):
         return np.concatenate(parts)
 
     def _faults(self, entry: EntryType, value: FloatArray) -> Iterator[Problem]:
-        """Problems of a value but for its range."""
+        """Problems of a value, its range excepted."""
         if value.size != entry.default.size:
             yield Problem(entry.name, f"must have {entry.default.size} numbers, got {value.size}")
         elif not np.all(np.isfinite(value)):
             yield Problem(entry.name, f"must be finite, got {value.tolist()}")
 
     def _unknown_names(self, given: Mapping[str, npt.ArrayLike]) -> Iterator[Problem]:
-        """A problem for every name that no value has."""
+        """A problem for every unknown name."""
         known = ", ".join(self.names) or "none"
         for name in given:
             if name not in self.names:
@@ -128,7 +128,7 @@ class StackedLayout(Generic[EntryType]):
         """Values by name from the stacked values, shape (size,).
 
         Raises:
-            SceneError: there are more or fewer.
+            SceneError: the number of stacked values is not ``size``.
         """
         vector = np.asarray(stacked, dtype=float).ravel()
         if vector.size != self.size:
@@ -139,15 +139,15 @@ class StackedLayout(Generic[EntryType]):
 
     @property
     def quaternions(self) -> list[int]:
-        """Places of the first numbers of quaternions of which either sign will do."""
+        """Indices of the first entries of quaternions that may have either sign."""
         return []
 
     def nearer(self, first: FloatArray, last: FloatArray) -> FloatArray:
-        """Values with those signs of quaternions that are nearer to other values: Q and −Q are one rotation.
+        """Values with the signs of quaternions that are nearer to other values: Q and −Q are one rotation.
 
         Args:
             first: the other values, shape (size,).
-            last: values, shape (size,).
+            last: the values, shape (size,).
         """
         signed = np.array(last, dtype=float)
         for start in self.quaternions:
@@ -156,5 +156,5 @@ class StackedLayout(Generic[EntryType]):
         return signed
 
     def unpack(self, stacked: FloatArray) -> dict[str, FloatArray]:
-        """Values by name from the stacked vector, each shaped as its default."""
+        """Values by name from the stacked vector, each in the shape of its default."""
         return {entry.name: stacked[span].reshape(entry.default.shape, order="F") for entry, span in self}

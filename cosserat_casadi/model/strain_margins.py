@@ -1,13 +1,13 @@
-"""Margins to states that no rod can be in: paths without length, joints out of a plane, laws that have ended.
+"""Margins to states that no rod can be in: paths of zero length, joints out of their plane, ends of laws.
 
 A path at D(X) in the sections has the tangent T = Γ + K × D + D'/ℓ. With plane, rigid sections the determinant of the
-deformation gradient is T_z there: where it vanishes matter is pressed to nothing, and beyond it is turned inside out.
-A cable has no length along the rod there, which the equations, that know |T| alone, do not see.
+deformation gradient is T_z there: where it vanishes matter is compressed to zero volume, and below zero it is turned
+inside out. A cable has no length along the rod there, which the equations do not notice, since they contain |T| alone.
 
-Where rods stay in a plane their joints hold them in it alone. Parameters and inputs that move a joint out of the plane
-would leave it open there, which the equations do not see.
+Joints of rods that stay in a plane hold them in the plane alone. Parameters and inputs that move a joint out of the
+plane would leave it open, which the equations do not notice.
 
-A material that is not linear has a law for some strains, and is stable where every further strain costs energy: where
+A nonlinear material has a law for a range of strains, and is stable if every further strain costs energy: if
 the pivots of its tangent stiffness are positive.
 """
 
@@ -27,22 +27,22 @@ from cosserat_casadi.rod.cable import RoutedCable
 from cosserat_casadi.rod.material_functions import material_margin
 
 VANISHED = 1e-3
-"""Margin that counts as none: a path that is followed to zero ends short of it by a last step."""
+"""Margin that counts as zero: a path that is followed to zero ends short of it by a last step."""
 
 APART = "sections"
 """Kind of the margin of sections at which contact is summed."""
 
 BESIDE = 1e-6
-"""Distance over the length, or angle, by which a joint may be out of the plane of its rods: rounding, of floats too."""
+"""Distance over the length, or angle, by which rounding may take a joint out of its plane, also of floats."""
 
 
 class StrainMargin(NamedTuple):
-    """The actuator, the rod or the joint that has a margin.
+    """Owner of a margin: an actuator, a rod, a joint or a contact.
 
     Attributes:
-        kind: "path" of a tendon, "plane" of a joint or a support, "material" of a rod, the kind of an actuator whose
-            law has an end, or "sections" of contact.
-        name: name of the actuator or of the rod; of a joint or a support its two sides in words.
+        kind: "path" for a tendon, "plane" for a joint or a support, "material" for a rod, the kind of an actuator with
+            an end of its law, or "sections" for contact.
+        name: name of the actuator or of the rod; for a joint or a support its two sides in words.
     """
 
     kind: str
@@ -50,13 +50,13 @@ class StrainMargin(NamedTuple):
 
 
 def strain_margins(system: System) -> dict[StrainMargin, Matrix]:
-    """Margins where they are least, 1×1 each: first margins of paths, then of planes, then of laws, last of sections.
+    """Least value of each margin, 1×1: margins of paths first, then of planes, of laws, last of sections.
 
-    Of a path its T_z, per length of the rod; tendons whose T_z no strain changes are left out. Of a joint in the plane
-    of its rods one less the square of its distance from it, over BESIDE; none where neither inputs nor parameters move
-    the places of constraints. Of a material the least pivot of its tangent stiffness relative to its Hooke tensor, or
-    how far the strain is from the ends of its law. Of an actuator how far its inputs are from the end of its law.
-    Of sections at which contact is summed, in motion, 0 where they lie too far apart to tell an error, else 1.
+    A path has its T_z, per length of the rod; tendons whose T_z no strain changes are left out. A joint in the plane of
+    its rods has one less the square of its distance from the plane over BESIDE; it is left out if neither inputs nor
+    parameters move constraints. A material has the least pivot of its tangent stiffness relative to its Hooke tensor,
+    or the distance of the strain from the ends of its law. An actuator has the distance of its inputs from the end of
+    its law. Sections at which contact is summed have, in motion, 0 if they lie too far apart to show an error, else 1.
     """
     margins: dict[StrainMargin, Matrix] = {}
     for actuator in system.discrete.scene.actuators:
@@ -68,16 +68,16 @@ def strain_margins(system: System) -> dict[StrainMargin, Matrix]:
             margins[StrainMargin("path", actuator.name)] = ca.mmin(along)
     margins |= _plane_margins(system)
     for name, rod in system.discrete.rods.items():
-        # Shapes take their time: those of linear rods are not asked for.
+        # Shapes are costly: they are not computed for linear rods.
         margin = None if rod.properties.beyond_hooke is None else material_margin(system.shapes[name])
         if margin is not None:
-            # A law ends where its margin is zero; what has one of paths' ends a little earlier.
+            # A law ends at a margin of zero; margins of paths count as zero at VANISHED, so that is added.
             margins[StrainMargin("material", name)] = margin + VANISHED
     for actuator in system.discrete.scene.actuators:
         margin = system.actuators.margin(actuator)
         if margin is not None:
             margins[StrainMargin(actuator.kind, actuator.name)] = margin + VANISHED
-    # At rest they tell of an error that is not known.
+    # At rest the error estimate itself says that the error is unknown.
     apart = sections_lie_apart(system) if system.discrete.moving else None
     if apart is not None:
         margins[StrainMargin(APART, "contact")] = 1 - apart
@@ -94,7 +94,7 @@ def _plane_margins(system: System) -> dict[StrainMargin, Matrix]:
             gaps[placed.what] = _with_tilts_of_a_line(gap, placed.held_by_plane) if is_hinge else gap
     if not gaps:
         return {}
-    # Floating frames follow what constraints hold them to: one that is moved may move them all.
+    # Floating frames follow their constraints: moving one frame may move all.
     held = [placed.constraint.residual(system.poses(placed)) for placed in system.discrete.constraints]
     given = ca.symvar(ca.veccat(ca.MX(system.arguments.inputs), system.discrete.parameters.symbol))
     if not ca.depends_on(ca.veccat(*gaps.values(), *held), ca.veccat(*given)):
@@ -103,9 +103,9 @@ def _plane_margins(system: System) -> dict[StrainMargin, Matrix]:
 
 
 def _with_tilts_of_a_line(gap: Matrix, held: HeldDirections) -> Matrix:
-    """A gap whose rotations out of the plane tilt a hinge's axis: turned by half a turn the axis is the same line.
+    """A gap with tilts of a hinge's axis out of the plane as those of a line, which half a turn maps to itself.
 
-    The gap has 2 sin(θ/2) of the angle θ by which the axis is tilted: times cos(θ/2) it is sin θ.
+    The gap contains 2 sin(θ/2) for a tilt of the axis by θ: times cos(θ/2) it is sin θ.
     """
     if held.rotations.shape[1] == 0:
         return gap

@@ -1,8 +1,8 @@
 """Rods, floating frames, loads and actuators of a scene as expressions of its unknowns and inputs.
 
-Rods stand side by side, each in the axes of its base. A scene of one rod is no special case: what couples rods adds
-rows and columns (model/assembly_equations.py), never instructions to the rods themselves. See docs/theory.md,
-sections 2 to 8.
+Rods stand side by side, each in the axes of its base. A scene of one rod is no special case: couplings of rods add rows
+and columns (model/assembly_equations.py), never instructions to the rods themselves. See docs/theory.md, sections 2 to
+8.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ from cosserat_casadi.rod.viscosity import Viscosity
 from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, RodLoad, Wrench, WrenchAt
 
 DRIVE_GROWTH = 6
-"""Power of the load factor by which drives of joints move: they turn most where their constraints are rigid."""
+"""Power of the load factor in the motion of drives of joints: they turn most while their constraints are rigid."""
 
 
 @dataclass(frozen=True)
@@ -56,9 +56,9 @@ class MotionArguments:
     """Rates of the unknowns and of the inputs of a scene in motion.
 
     Attributes:
-        v: rates of the unknowns, 1/s; rates of multipliers and tensions are not read.
+        v: rates of the unknowns, 1/s; rates of multipliers and tensions are ignored.
         a: second derivatives of the unknowns, 1/s².
-        inputs_rate: rates of the stacked inputs; only rates of bases and lengths are read.
+        inputs_rate: rates of the stacked inputs; only rates of bases and lengths are used.
         inputs_acceleration: second derivatives of the stacked inputs.
     """
 
@@ -70,7 +70,7 @@ class MotionArguments:
 
 @dataclass(frozen=True)
 class Arguments:
-    """Symbols, or numbers, that a system is written in.
+    """Arguments of a system, symbols or numbers.
 
     Attributes:
         x: unknowns.
@@ -87,15 +87,15 @@ class Arguments:
 
 @dataclass(frozen=True)
 class System:
-    """A scene in given arguments.
+    """Rods, frames, loads and actuators of a scene in given arguments.
 
     Attributes:
         discrete: constant matrices of the scene.
         arguments: symbols or numbers that the expressions are written in.
-        columns: columns of the variations of rods that are known already, by rod.
-        turns: turns of the intervals of a rod, by rod, in place of those by all of its angular coordinates; for
+        columns: columns of the variations of rods that are already computed, by rod.
+        turns: turns of the intervals of a rod, by rod, that replace the turns by all its angular coordinates in
             :meth:`pose_variations`.
-        friction: [force; moment] on what rubs, as :attr:`rubbing` tells it, by name; computed where it is left out.
+        friction: [force; moment] of each member of :attr:`rubbing`, by name; members that are left out are computed.
     """
 
     discrete: DiscreteScene
@@ -118,12 +118,12 @@ class System:
     @cached_property
     def tangents(self) -> dict[str, Tangent]:
         """Variations of every rod's fields."""
-        # In motion there is so much more of it that it is loops.
+        # In motion there are so many more instructions that loops replace them.
         in_loops = self.arguments.motion is not None
         return {name: Tangent(igm, in_loops, given=self.columns.get(name)) for name, igm in self.rods.items()}
 
     def pose_variations(self, rod: str) -> Tangent:
-        """Variations of a rod's sections, without variations of what acts on it."""
+        """Variations of a rod's sections, without variations of its loads."""
         return Tangent(InverseGeometricModel(Statics(self.shapes[rod], ())), turns=self.turns.get(rod))
 
     @cached_property
@@ -164,7 +164,7 @@ class System:
 
     @property
     def rubbing(self) -> list[PairTerms | RodDrag | BodyDrag]:
-        """All whose friction is computed apart."""
+        """All terms with friction that is computed apart: pairs of rods and drags."""
         return [*(terms for terms in self.pairs if terms.rubs), *self.drags]
 
     @cached_property
@@ -242,7 +242,7 @@ class System:
         return motions
 
     def _turning_mass(self, name: FrameName) -> float:
-        """Moment of inertia of the size that the body, or the rod, of a floating frame has, kg m²."""
+        """Order of magnitude of the moment of inertia of a floating frame's body or rod, kg m²."""
         frame = self.discrete.nominal.frames[name]
         if frame.body is not None:
             return frame.body.mass * frame.length**2 + float(np.trace(frame.body.inertia_matrix))
@@ -262,7 +262,7 @@ class System:
 
     @cached_property
     def body_inertias(self) -> dict[str, BodyInertia]:
-        """Inertia of every body that moves and has any, world axes."""
+        """Inertia of every moving body with mass or moments of inertia, world axes."""
         inertias = {}
         for name, motion in self.body_motions.items():
             body = self.discrete.bodies[name]
@@ -300,7 +300,7 @@ class System:
         return ca.repmat(base.position, 1, shape.rod.grid.size) + base.rotation @ shape.position
 
     def sections(self, rod: str, weights: Matrix) -> list[Matrix]:
-        """World positions, 3×k, m, and three directors, 3×k each, of sections that weights of nodes make, M×k."""
+        """World positions, 3×k, m, and directors, 3×k each, of sections interpolated by weights of nodes, M×k."""
         base, shape = self.base(rod), self.shapes[rod]
         start = ca.repmat(ca.MX(base.position), 1, weights.shape[1])
         directors = [base.rotation @ (director @ weights) for director in shape.directors]
@@ -331,14 +331,14 @@ class System:
         return self.frame(FrameName("body", name))
 
     def seen_from(self, body: str | None, positions: Matrix) -> Matrix:
-        """World positions, 3×k in m, in the axes of a body; as they are where that is None, the world."""
+        """World positions, 3×k in m, in the axes of a body; unchanged for None, the world."""
         if body is None:
             return positions
         pose = self.body(body)
         return pose.rotation.T @ (positions - ca.repmat(pose.position, 1, positions.shape[1]))
 
     def turned_to(self, body: str | None, vectors: Matrix) -> Matrix:
-        """World vectors, 3×k, in the axes of a body; as they are where that is None, the world."""
+        """World vectors, 3×k, in the axes of a body; unchanged for None, the world."""
         return vectors if body is None else self.body(body).rotation.T @ vectors
 
     def poses(self, placed: PlacedConstraint) -> ConstraintPoses:
@@ -351,7 +351,7 @@ class System:
         return self._poses_but_section(placed)._replace(section=held)
 
     def _frame_of(self, placed: PlacedConstraint) -> Pose:
-        """World pose of the frame on the other side of a constraint; the world's own for a support."""
+        """World pose of the frame on the other side of a constraint; the identity for a support."""
         if placed.at_base:
             return self._still_bases[placed.rod]
         if placed.frame is None:
@@ -359,7 +359,7 @@ class System:
         return self.frame(placed.frame)
 
     def coordinate(self, placed: PlacedConstraint) -> Matrix | None:
-        """Coordinate of a joint, 1×1, rad or m: an unknown, or what its drive prescribes; None without one."""
+        """Coordinate of a joint, 1×1, rad or m: an unknown, or prescribed by a drive; None for other joints."""
         if placed.constraint.coordinate is None:
             return None
         record = self.discrete.joint_record(placed)
@@ -370,7 +370,7 @@ class System:
             value = ca.DM.zeros(1, 1)
         if self.arguments.load_factor is None:
             return value
-        # The drive moves from where the unloaded scene is, late enough for springs that grow stiff to keep up with it.
+        # The drive moves from its coordinate in the unloaded scene, so late that the growing springs keep up with it.
         return self.arguments.load_factor**DRIVE_GROWTH * value
 
     def joint_effort(self, placed: PlacedConstraint) -> JointEffort:
@@ -381,7 +381,7 @@ class System:
         return effort
 
     def way_to_stop(self, stop: JointStop) -> Matrix:
-        """Way of a joint to its stop, which may have given way, 1×1, in the unit of its coordinate as an unknown."""
+        """Distance of a joint from its stop, which may be elastic, 1×1, in the unit of its coordinate as an unknown."""
         value = self.arguments.x[self.discrete.coordinate(stop.placed)]
         way = stop.side * (value - as_matrix(as_vector([stop.bound])) / stop.placed.coordinate_scale)
         if stop.stiffness is None:
@@ -389,7 +389,7 @@ class System:
         return way + stop.softness * self.arguments.x[self.discrete.stop(stop)]
 
     def stop_energy(self, stop: JointStop) -> Matrix:
-        """Energy that an elastic stop holds, 1×1, J."""
+        """Energy stored in an elastic stop, 1×1, J."""
         push = self.arguments.x[self.discrete.stop(stop)]
         return stop.placed.constraint.unit * stop.softness / 2 * push**2
 
@@ -419,11 +419,11 @@ class System:
 
     @cached_property
     def _still_bases(self) -> dict[str, Pose]:
-        """Poses of the bases as the scene and the inputs say them, by the names of their rods."""
+        """Poses of the bases by the scene and the inputs, by the names of their rods."""
         return {rod: self._still_base(rod) for rod in self.discrete.rods}
 
     def _still_base(self, rod: str) -> Pose:
-        """Pose of a base that rests in the world: the scene's, or what the inputs say."""
+        """Pose of a base that rests in the world: from the inputs, or else the scene."""
         position, quaternion = map(as_matrix, written_base_pose(self.discrete.records[rod]))
         free_position = self.discrete.layout.of_rod(rod, "base.position")
         free_quaternion = self.discrete.layout.of_rod(rod, "base.quaternion")
@@ -435,7 +435,7 @@ class System:
         return Pose(position, quaternion)
 
     def _still_base_motion(self, rod: str) -> FrameMotion:
-        """Motion of a base that no frame carries, world axes: at rest, or what the inputs make of it."""
+        """Motion of a base that no frame carries, world axes: at rest, or from the rates of inputs."""
         motion = self.arguments.motion
         moved = AT_REST
         if motion is None:
@@ -461,7 +461,7 @@ class System:
         velocity = motion.v[strains]
         acceleration = motion.a[strains]
         if length is None:
-            # None of a length that is fixed, zeros of one that a parameter sets.
+            # A fixed length has no rates, a length that a parameter sets has zero rates.
             still = None if self.discrete.rods[rod].properties.ratio is None else ca.DM(1, 1)
             return StrainRates(velocity, acceleration, still, still)
         reference = self.discrete.rods[rod].properties.length
@@ -475,7 +475,7 @@ class System:
         return ca.sum1(ca.vertcat(*energies))
 
     def potential(self) -> Matrix | None:
-        """Energy of all rods and their dead forces, J; None where some load has none that can be written."""
+        """Energy of all rods and their dead forces, J; None if some load is not a dead force."""
         terms = [igm.potential for igm in self.rods.values()]
         known = [term for term in terms if term is not None]
         if self.discrete.constraints or self.discrete.pairs or len(known) < len(terms):
@@ -486,11 +486,11 @@ class System:
         """Wrenches of the scene's loads on a rod that keep their direction in the world, base frame."""
         wrenches = [load for load in self._loads(rod) if not isinstance(load, PoseWrench)]
         dead = [wrench for wrench in wrenches if not wrench.follower]
-        # What inertia is at this instant keeps its direction in the world as well.
+        # Inertia is a dead load too, with its value at this instant.
         return [*dead, *self._pair_wrenches(rod), *self._drag_wrenches(rod), *self._inertia_wrenches(rod)]
 
     def _pair_wrenches(self, rod: str) -> list[LineWrench]:
-        """Forces of other rods, and of other stretches of the rod, on it, base frame."""
+        """Forces of contact with other rods, or with other stretches of the rod, on this rod, base frame."""
         return [wrench for terms in self.pairs if rod in terms.pair.rods for wrench in terms.wrenches(rod)]
 
     def _drag_wrenches(self, rod: str) -> list[Wrench]:
@@ -537,7 +537,7 @@ class System:
         return RodLoads(self.discrete, rod, base, self.arguments.inputs, ratio, motion, self.body)
 
     def length(self, rod: str) -> Matrix | float:
-        """Length of a rod, m: the scene's, or that which an input or a parameter sets."""
+        """Length of a rod, m: set by an input or a parameter, or else the scene's."""
         nominal = self.discrete.rods[rod].properties.length
         ratio = ratio_of(self.discrete, rod, self.arguments)
         return nominal if ratio is None else nominal * ratio
@@ -556,7 +556,7 @@ class System:
             poses = self._poses_but_section(placed)
             wrench = constraint.wrench_basis(poses) @ multipliers
             return WrenchAt(constraint.at, wrench[3:], wrench[:3], follower=False)
-        # Constant directions: the constraint costs its rod no more than a load of fixed direction.
+        # With constant directions the constraint costs its rod no more than a load of fixed direction.
         displacements = held.positions.shape[1]
         force_unit = constraint.unit / constraint.length
         force = force_unit * (_sparse(held.positions) @ multipliers[:displacements])
@@ -566,9 +566,9 @@ class System:
         return WrenchAt(constraint.at, force, moment, follower=False)
 
     def _poses_but_section(self, placed: PlacedConstraint) -> ConstraintPoses:
-        """The poses that the direction of a constraint's wrench depends on; the section's is not among them.
+        """The poses on which the direction of a constraint's wrench depends, without the section's.
 
-        The pose of the section follows from the wrench: the balance of the rod cannot be written in it.
+        The pose of the section follows from the wrench, so that the wrench on the rod must not depend on it.
         """
         base = self.base(placed.rod) if placed.carried is None else self.frame(placed.carried.frame)
         return ConstraintPoses(IDENTITY.pose, base, self._frame_of(placed), self.coordinate(placed))
@@ -576,7 +576,7 @@ class System:
     @cached_property
     def _base_R_world(self) -> dict[str, Matrix]:
         """Rotations from the world into the bases of the rods, 3×3 each; sparse where they are constant."""
-        # Zeros of a constant base, an upright rod's above all, cost no product.
+        # Zeros of a constant base, such as that of an upright rod, cost no product.
         return {rod: sparse_known(self.base(rod).rotation).T for rod in self.discrete.rods}
 
 

@@ -1,4 +1,4 @@
-"""The table of functions that every system fills, rods and concentric tubes alike: what solvers and paths ask for."""
+"""Protocol of every system, rods and concentric tubes: the functions that solvers and paths call."""
 
 from __future__ import annotations
 
@@ -33,15 +33,15 @@ class SystemFunctions(OfScene, Protocol):
 
     @property
     def lengths(self) -> dict[str, float]:
-        """Length that the pose error of each rod, or tube, is relative to, m."""
+        """Reference length of the pose error of each rod, or tube, m."""
 
     @property
     def resolution(self) -> dict[str, Any]:
-        """How finely the system is resolved, as data: modes and nodes of every rod, or steps of a piece of tubes."""
+        """Resolution of the system as data: modes and nodes of every rod, or steps of a piece of tubes."""
 
     @property
     def resolution_words(self) -> list[str]:
-        """How finely the system is resolved, in words."""
+        """Resolution of the system in words."""
 
     @property
     def step_weights(self) -> FloatArray:
@@ -49,7 +49,7 @@ class SystemFunctions(OfScene, Protocol):
 
     @property
     def is_assembly(self) -> bool:
-        """Whether the Jacobian is solved with as a sparse matrix."""
+        """Whether solvers factorise the Jacobian as a sparse matrix."""
 
     @property
     def hessian_is_cheap(self) -> bool:
@@ -65,7 +65,7 @@ class SystemFunctions(OfScene, Protocol):
         """Unknowns from which loads, or curvatures, grow, shape (size,)."""
 
     def has_potential(self, inputs: FloatArray) -> bool:
-        """Whether an energy tells which equilibria are stable."""
+        """Whether the system has a potential at these inputs, which tells stable equilibria from unstable ones."""
 
     @property
     def residual(self) -> ca.Function:
@@ -73,27 +73,27 @@ class SystemFunctions(OfScene, Protocol):
 
     @property
     def jacobian(self) -> ca.Function:
-        """(x, inputs) ↦ its derivative with x, and the residual."""
+        """(x, inputs) ↦ derivative of the residual by x, and the residual."""
 
     @property
     def input_jacobian(self) -> ca.Function:
-        """(x, inputs) ↦ its derivative with the inputs."""
+        """(x, inputs) ↦ derivative of the residual by the inputs."""
 
     @property
     def parameter_jacobian(self) -> ca.Function:
-        """(x, inputs, p) ↦ its derivative with the parameters, of a system that has some."""
+        """(x, inputs, p) ↦ derivative of the residual by the parameters; None without parameters."""
 
     @property
     def path_residual(self) -> ca.Function:
-        """(x, inputs, load_factor) ↦ residual."""
+        """(x, inputs, load_factor) ↦ residual at a load factor."""
 
     @property
     def path_jacobian(self) -> ca.Function:
-        """(x, inputs, load_factor) ↦ its derivative with x."""
+        """(x, inputs, load_factor) ↦ derivative by x of the residual at a load factor."""
 
     @property
     def path_rate(self) -> ca.Function:
-        """(x, inputs, load_factor, inputs_rate, load_factor_rate) ↦ its rate at fixed x."""
+        """(x, inputs, load_factor, inputs_rate, load_factor_rate) ↦ rate of the residual at fixed x."""
 
     @property
     def tip(self) -> Mapping[str, ca.Function]:

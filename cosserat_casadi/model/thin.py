@@ -1,4 +1,4 @@
-"""Thin smooth obstacles and rods that touch rods, and the places of what may not come out on their other side."""
+"""Thin smooth obstacles and rods in contact, and positions of the points that must not pass through them."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.system import System
 
 Moved = tuple[str | None, str | None, int | None, str | None]
-"""Names of the rod or the body that moves, the node of a disk on the rod, and the body whose axes places are in."""
+"""Names of the rod or the body that moves, the node of a disk on the rod, and the body in whose axes positions are."""
 
 
 def moved_by(discrete: DiscreteScene, layer: ContactLayer) -> Moved:
-    """The rod, disk or body before a layer, as its obstacle sees it: layers with the same one have the same places."""
+    """The rod, disk or body that a layer pushes, relative to its obstacle; layers that share it share positions."""
     node = None
     if layer.at is not None:
         assert layer.rod is not None, "a disk is on a rod"
@@ -24,10 +24,10 @@ def moved_by(discrete: DiscreteScene, layer: ContactLayer) -> Moved:
 
 
 def first_places(discrete: DiscreteScene) -> tuple[dict[Moved, int], list[int]]:
-    """Numbers of the first places of rods, disks and bodies before layers, and of the first sections of rods of pairs.
+    """Column of the first position of each rod, disk or body at layers, and of each rod of a pair of rods.
 
     Returns:
-        the numbers by rod, disk or body; the numbers of the sections, behind which the number of all places stands.
+        the columns by rod, disk or body; the columns of the rods of pairs, followed by the number of all columns.
     """
     first = dict[Moved, int]()
     count = 0
@@ -42,10 +42,10 @@ def first_places(discrete: DiscreteScene) -> tuple[dict[Moved, int], list[int]]:
 
 
 def places(system: System) -> Matrix | None:
-    """Positions of what may pass through something thin, 3×…, m: of nodes, disks and bodies, then of sections of pairs.
+    """Positions of points that could pass thin obstacles or rods, 3×…, m: nodes, disks, bodies, then sections of pairs.
 
-    None where there is nothing thin. Positions before obstacles are in the axes of the obstacles, positions of sections
-    of pairs in world axes.
+    None without thin obstacles and pairs. Positions at obstacles are in the axes of the obstacles, positions of
+    sections of pairs in world axes.
     """
     discrete = system.discrete
     before = {moved_by(discrete, layer): layer for layer in thin_layers(discrete)}

@@ -1,4 +1,4 @@
-"""Scenes of concentric tubes have no rods: what works on rods refuses them."""
+"""Refusal of scenes of concentric tubes, which have no rods, by functions for rods."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from cosserat_casadi.model.system_functions import OfScene
 
 
 def refuse_tubes(subject: scenes.Scene | OfScene) -> None:
-    """Refuse concentric tubes, as a scene or as a model, where rods are asked for.
+    """Refuse a scene or a model of concentric tubes where rods are needed.
 
     Raises:
         SceneError: the scene has tubes.

@@ -1,6 +1,6 @@
-"""The unknowns x of a scene as records: what each block of entries is, which owner it has, and its slice of x.
+"""The unknowns x of a scene as records: what each block of entries is, its owner, and its slice of x.
 
-The order of x is settled here and nowhere else. Whoever needs a part of x asks for its block.
+This module alone knows the order of x; other modules ask for the block of a part of x.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class BlockKind(Enum):
     STOP = "stop"
     """Moment or force of a stop of a joint."""
     FLOW = "flow"
-    """Strain coordinates of the dashpots of a rod whose stress relaxes, since the start of its motion."""
+    """Strain coordinates, since the start of a motion, of the dashpots of a rod with relaxing stress."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class UnknownBlock:
     Attributes:
         kind: what the unknowns are.
         owner: name of the rod, the floating frame or the tendon; path of the scene's table of a constraint or a joint.
-        rod: name of the rod that the block's equations are solved with; None for what several rods share.
+        rod: name of the rod with which the block is eliminated; None for a block that several rods share.
         size: number of unknowns.
         unit: energy that the equations are divided by, J.
         step_weight: how much one unit counts in the length of a continuation step.
@@ -57,8 +57,8 @@ class UnknownBlock:
 
     @property
     def differential(self) -> bool:
-        """Whether the unknowns are coordinates that move; multipliers, tensions and pushes are algebraic."""
-        # Those follow from the coordinates at every instant and have no rate of their own.
+        """Whether the unknowns are differential; multipliers, tensions and pushes are algebraic."""
+        # Algebraic unknowns follow from the coordinates at every instant and have no rates.
         return self.kind in (BlockKind.STRAIN, BlockKind.POSE, BlockKind.COORDINATE, BlockKind.FLOW)
 
 
@@ -127,7 +127,7 @@ class Unknowns:
 
     @cached_property
     def differential(self) -> npt.NDArray[np.bool_]:
-        """Whether each unknown is a coordinate that moves, shape (size,)."""
+        """Whether each unknown is differential, shape (size,)."""
         return self._repeated([block.differential for block in self.blocks]) > 0.0
 
     def _repeated(self, values: Sequence[float]) -> FloatArray:

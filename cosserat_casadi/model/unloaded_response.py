@@ -1,4 +1,4 @@
-"""The linear response of the unloaded scene to its loads: where a load path begins."""
+"""The linear response of the unloaded scene to its loads: the first tangent of a load path."""
 
 from __future__ import annotations
 
@@ -25,25 +25,25 @@ def unloaded_response(
 ) -> Matrix:
     """dx/dλ of the unloaded scene: its linear response to the loads, size×1.
 
-    The Jacobian there is constant and the loads are linear in the inputs: an affine map, found by evaluating it. Where
-    lengths and bases of rods are inputs, or numbers of loads that depend on poses, it is the map's linear part at the
-    scene's own values.
+    The Jacobian there is constant and the loads are linear in the inputs, so that evaluations give the affine map. If
+    lengths and bases of rods are inputs, or numbers of loads that depend on poses, the map is linearised at the scene's
+    own values.
 
     Args:
         discrete: the scene.
-        path_jacobian: derivative of the residual on the load path with x.
-        path_rate: its derivative with inputs and load factor, along their speeds.
+        path_jacobian: derivative by x of the residual on the load path.
+        path_rate: derivative of the residual along the rates of inputs and load factor.
         inputs: stacked inputs.
     """
     size = discrete.layout.size
     unloaded = np.zeros(discrete.size)
     no_rate = np.zeros(size)
     origin = np.zeros(size)
-    # What the rate is not affine in: geometry, and inputs of loads that depend on poses.
+    # Inputs in which the rate is not affine: geometry, and inputs of loads that depend on poses.
     geometry = sorted({*discrete.layout.geometry, *nonlinear_inputs(discrete)})
     origin[geometry] = discrete.layout.pack()[geometry]
     jacobian = path_jacobian(unloaded, origin, 0.0)
-    # The rate at the origin, and with one input at a time set to one.
+    # The rate at zero inputs, and with one input at a time set to one.
     linear = np.setdiff1d(np.arange(size), geometry)
     probes = np.hstack([np.zeros((size, 1)), np.eye(size)[:, linear]])
     at_probes = path_rate.map(len(linear) + 1)(unloaded, origin[:, None] + probes, 0.0, no_rate, 1.0).full()
@@ -51,7 +51,7 @@ def unloaded_response(
     rates[:, 1 + linear] = at_probes[:, 1:]
     deviation = inputs
     if geometry:
-        # Numbers of nodes, by which obstacles are raised and rub, do nothing in the unloaded scene.
+        # Inputs with values at nodes, by which obstacles are raised and rub, have no effect in the unloaded scene.
         felt = [index for index in geometry if index not in discrete.layout.nodal]
         values = discrete.layout.pack()
         moved = ca.MX.sym("moved", len(felt))
@@ -61,7 +61,7 @@ def unloaded_response(
         rates[:, 1 + np.asarray(felt, dtype=int)] += slope(values[felt]).full()
         deviation = inputs - ca.DM(origin)
     response = rates
-    # A scene whose rods admit no strain has nothing to solve for.
+    # A scene whose rods admit no strain has no unknowns.
     if discrete.size:
         response = -np.linalg.solve(jacobian.full(), rates)
     at_origin = response[:, :1]
@@ -76,7 +76,7 @@ def parametric_response(written: Expressions) -> Matrix:
     load_factor = ca.MX.sym("load_factor")
     if not discrete.size:
         return ca.MX(0, 1)
-    # A symbol: some Jacobians are derivatives by it.
+    # A symbol, since some Jacobians are derivatives by it.
     x = ca.MX.sym("x", discrete.size)
     equations = SceneEquations(System(discrete, Arguments(x, written["inputs"], load_factor)))
     rate = ca.jacobian(equations.residual, load_factor)

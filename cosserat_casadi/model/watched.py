@@ -1,7 +1,7 @@
 """Watched poses of sections and bodies, and lengths of cables: the tolerance bounds their errors.
 
-The tip of a rod that a support holds is where it is held, however coarse the model: such a rod is watched at sections
-between its ends too, and where a scene asks for the whole shape every rod is. See docs/theory.md, section 10.
+The tip of a rod that a support holds is at its pose, however coarse the model: such a rod is watched at sections
+between its ends too, and every rod is if a scene asks for the whole shape. See docs/theory.md, section 10.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ from cosserat_casadi.model.section_poses import SectionPoses, section_weights
 from cosserat_casadi.model.system import System
 
 BETWEEN = (0.25, 0.5, 0.75, 1.0)
-"""Sections at which a held rod is watched."""
+"""Abscissae of the sections at which a held rod is watched."""
 
 SAMPLES = (1 - np.cos(np.pi * np.arange(257) / 256)) / 2
-"""Sections at which a whole shape is compared: several for each wave of the error of 60 modes."""
+"""Abscissae of the sections at which a whole shape is compared: several for each wave of the error of 60 modes."""
 
 POSE_SIZE = 7
 """Numbers of a position and a quaternion."""
 
 EVERY = 4
-"""Stride through these sections to the ones that are watched where the whole shape must be right."""
+"""Stride through these sections to the watched ones, if the tolerance bounds the whole shape."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Watched:
 
     Attributes:
         positions: positions of sections, then of bodies, over the lengths of their rods, 3×k.
-        quaternions: world_Q_section of these sections and bodies, 4×k; of unit length.
+        quaternions: world_Q_section of these sections and bodies, 4×k, with norm 1.
         cables: lengths of cables over the lengths of their rods, 1×c.
     """
 
@@ -75,7 +75,7 @@ class WatchedNumbers:
         return cls(positions.reshape(-1, 3), quaternions.reshape(-1, 4), lengths)
 
     def moved(self, before: WatchedNumbers, after: WatchedNumbers) -> WatchedNumbers:
-        """These numbers moved by the change from one to another, to first order: quaternions lose their unit length."""
+        """These numbers plus the change from one to another; quaternions keep norm 1 to first order alone."""
         return WatchedNumbers(
             self.positions + (after.positions - before.positions),
             self.quaternions + (after.quaternions - before.quaternions),
@@ -83,7 +83,7 @@ class WatchedNumbers:
         )
 
     def change_from(self, before: WatchedNumbers) -> FloatArray:
-        """How far each is from where it was, shape (2k + c, 3), as in :mod:`cosserat_casadi.maths.pose_change`."""
+        """Change of each pose and length, shape (2k + c, 3); see :mod:`cosserat_casadi.maths.pose_change`."""
         displacements = self.positions - before.positions
         rotations = rotation_vectors(before.quaternions, self.quaternions)
         lengthening = np.zeros((len(self.cables), 3))
@@ -92,7 +92,7 @@ class WatchedNumbers:
 
 
 def watched_sections(scene: scenes.Scene, rod: str) -> FloatArray:
-    """Abscissae of the sections of a rod whose poses must be right to the tolerance, shape (k,)."""
+    """Abscissae of the sections of a rod with pose errors that the tolerance bounds, shape (k,)."""
     if scene.accuracy.shape:
         return np.asarray(SAMPLES[EVERY::EVERY])
     if rod in scene.rods_held_at_tips:
@@ -101,7 +101,7 @@ def watched_sections(scene: scenes.Scene, rod: str) -> FloatArray:
 
 
 def watched_owners(discrete: DiscreteScene) -> list[str]:
-    """The rod, or the body, of each entry of :attr:`Watched.column`; of a cable the rod that it runs along."""
+    """Names of the rod or the body of each entry of :attr:`Watched.column`; a cable has the rod that it runs along."""
     posed = [name for name in discrete.rods for _ in watched_sections(discrete.scene, name)]
     posed += list(discrete.bodies)
     of_positions = [name for name in posed for _ in range(3)]
@@ -110,7 +110,7 @@ def watched_owners(discrete: DiscreteScene) -> list[str]:
 
 
 def watched_cables(discrete: DiscreteScene) -> dict[str, str]:
-    """Cables whose lengths must be right to the tolerance, with the rods that they run along."""
+    """Cables with length errors that the tolerance bounds, and the rods that they run along."""
     cables = {}
     for actuator in discrete.scene.actuators:
         if EFFECTS[actuator.kind].drawn_as == "cable":

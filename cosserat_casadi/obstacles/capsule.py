@@ -14,7 +14,7 @@ from cosserat_casadi.scene.obstacle_records import Capsule
 
 @final
 class CapsuleObstacle(Obstacle[Capsule]):
-    """All that is nearer to an axis than a radius."""
+    """The points nearer to an axis than a radius."""
 
     record = Capsule
 
@@ -42,7 +42,7 @@ def capsule_net(start: FloatArray, end: FloatArray, radius: float) -> FloatArray
     Args:
         start: centre of one half ball, shape (3,), m.
         end: centre of the other half ball, shape (3,), m; ``start`` for a whole ball.
-        radius: of bar and balls, m.
+        radius: radius of bar and balls, m.
     """
     axis = end - start
     length = np.linalg.norm(axis)

@@ -1,8 +1,8 @@
 """The inside of a tube: the union of the balls of radius R(s) about the points c(s) of a line.
 
-Its distance, counted from inside, is max over s of R(s) − |r − c(s)|: exact for a line of which the balls make a smooth
-surface. The line is a natural cubic spline over the distances between its points, which is straight beyond its ends;
-the radius is a cubic spline without slope at its ends, constant beyond them.
+Its distance from inside is max over s of R(s) − |r − c(s)|, which is exact if the balls make a smooth surface. The line
+is a natural cubic spline over the distances between its points, which is straight beyond its ends; the radius is a
+cubic spline without slope at its ends, constant beyond them.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from cosserat_casadi.obstacles.obstacle import Obstacle, across, rounded_norm
 from cosserat_casadi.scene.obstacle_records import Lumen
 
 STARTS = 6
-"""Places between two points of the line from which the nearest one is sought."""
+"""Starts between two points of the line of the search for the nearest point."""
 
 NEWTON_STEPS = 5
 """Newton steps to the ball that reaches farthest: each doubles the digits, and two more give two exact derivatives."""
 
 SMALLEST_SLOPE = 0.1
-"""Least rate of the stationarity that a Newton step divides by: no step runs away where balls nest."""
+"""Least derivative of the stationarity by which a Newton step divides, so that no step diverges where balls nest."""
 
 
 class CentreLine:
@@ -41,7 +41,7 @@ class CentreLine:
         points = np.asarray(lumen.points)
         chords = np.linalg.norm(np.diff(points, axis=0), axis=1)
         self.knots = np.concatenate([[0.0], np.cumsum(chords)])
-        # Without curvature at the ends, so that the straight parts beyond them meet smoothly.
+        # Without curvature at the ends, so that the straight parts beyond continue smoothly.
         self._line = cubic_coefficients(self.knots, points, natural=True)
         self._radius = cubic_coefficients(self.knots, np.asarray(lumen.radii)[:, None])
         symbol = ca.SX.sym("s")
@@ -78,7 +78,7 @@ class CentreLine:
 
 @final
 class LumenObstacle(Obstacle[Lumen]):
-    """All that is outside a tube."""
+    """The points outside a tube."""
 
     record = Lumen
     forbidden = "outside"
@@ -95,7 +95,7 @@ class LumenObstacle(Obstacle[Lumen]):
         return radius - rounded_norm(point - centre, size)
 
     def faults(self, obstacle: Lumen, radius: float) -> Iterator[Problem]:
-        """A lumen is wider than its rods, all along, and does not bend about its own walls."""
+        """A lumen is wider than its rods everywhere, and its radius of curvature exceeds its radius."""
         centre_line = CentreLine(obstacle)
         s = np.linspace(centre_line.knots[0], centre_line.knots[-1], 40 * len(centre_line.knots))
         line, radii = centre_line.at(s)
@@ -142,7 +142,7 @@ def _newton_step(line: CentreLine, size: float) -> ca.Function:
     arm = point - centre
     along = ca.jacobian(centre, s)
     slope = ca.jacobian(radius, s) * rounded_norm(arm, size) + ca.dot(arm, along)
-    # It falls through zero there, by −|c′|² on the line itself.
+    # The stationarity falls through zero there, with the slope −|c′|² on the line itself.
     fall = -ca.jacobian(slope, s)
     step = slope / ca.fmax(fall, SMALLEST_SLOPE * ca.sumsqr(along))
     return ca.Function("step", [s, point], [s + step])
@@ -157,7 +157,7 @@ def _farthest_start(line: CentreLine, point: Matrix) -> Matrix:
     farthest = float(radii[0]) - ca.norm_2(point - ca.DM(centres[0]))
     for start, centre, radius in zip(starts[1:], centres[1:], radii[1:], strict=True):
         reach = float(radius) - ca.norm_2(point - ca.DM(centre))
-        # A choice between numbers: it has no derivative.
+        # A choice between numbers, which has no derivative.
         chosen = ca.if_else(reach > farthest, float(start), chosen)
         farthest = ca.fmax(farthest, reach)
     return chosen

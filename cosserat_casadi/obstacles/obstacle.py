@@ -1,4 +1,4 @@
-"""Base class of obstacles: an obstacle is a kind of table of the scene, as the distance of a point of space from it.
+"""Base class of obstacles: a kind of obstacle gives the distance of a point of space from it.
 
 A member is one file and one line of the registry. It gives :meth:`Obstacle.distance`, a small function of a point.
 Normals and curvatures are its derivatives, which CasADi forms.
@@ -21,7 +21,7 @@ from cosserat_casadi.scene.obstacle_records import OBSTACLES, ObstacleRecord
 RecordType = TypeVar("RecordType", bound=ObstacleRecord)
 
 ROUNDING = 1e-8
-"""Distance, relative to the size of an obstacle, at which its middle is smoothed: (1e-8)²/2 is below rounding."""
+"""Distance from the middle of an obstacle, relative to its size, for smoothing: (1e-8)²/2 is below rounding."""
 
 
 class Obstacle(Kind, ABC, Generic[RecordType]):
@@ -57,16 +57,16 @@ class Obstacle(Kind, ABC, Generic[RecordType]):
 
         Args:
             obstacle: the record of the scene.
-            near: a point that an endless surface is drawn about, shape (3,), m.
-            size: of the scene, m.
+            near: a point about which an infinite surface is drawn, shape (3,), m.
+            size: size of the scene, m.
         """
 
     def primitive(self, obstacle: RecordType, size: float) -> dict[str, Any]:
-        """The shape as attributes of a geom of MuJoCo, whose type is a word; empty where MuJoCo has none such.
+        """The shape as attributes of a geom of MuJoCo, with its type; empty if MuJoCo does not have the shape.
 
         Args:
             obstacle: the record of the scene.
-            size: of the scene, m, which an endless surface is drawn in.
+            size: size of the scene, m, for drawing an infinite surface.
         """
         return {}
 
@@ -86,7 +86,7 @@ def rounded_norm(vector: Matrix, size: float) -> Matrix:
 
 def across(direction: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Two unit vectors that are normal to a direction and to each other."""
-    # The axis that is farthest from the direction makes the best beginning.
+    # The axis that is farthest from the direction is the best start.
     axis = np.eye(3)[int(np.argmin(np.abs(direction)))]
     first = np.cross(direction, axis)
     first /= np.linalg.norm(first)

@@ -15,7 +15,7 @@ from cosserat_casadi.scene.obstacle_records import Plane
 
 @final
 class PlaneObstacle(Obstacle[Plane]):
-    """All that lies behind a plane."""
+    """The points behind a plane."""
 
     record = Plane
 

@@ -1,4 +1,4 @@
-"""Obstacles that this version knows. A new one is a file here and a line below."""
+"""Registry of obstacles. A new kind takes a file here and a line below."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from cosserat_casadi.scene.obstacle_records import Sphere
 
 @final
 class SphereObstacle(Obstacle[Sphere]):
-    """All that lies in a ball."""
+    """The points in a ball."""
 
     record = Sphere
 

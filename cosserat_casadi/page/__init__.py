@@ -1,1 +1,1 @@
-"""A scene as one HTML file: the exported solver as WebAssembly, sliders, and the robot drawn as it deforms."""
+"""A scene as one HTML file: the exported solver as WebAssembly, sliders, and a drawing of the deformed robot."""

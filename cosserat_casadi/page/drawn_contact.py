@@ -1,4 +1,4 @@
-"""The solver of a page of rods in exact contact: a library of arrangements of contacts, and a picture of each."""
+"""The solver of a page with exact contact: a library of contact arrangements, with a drawing function for each."""
 
 from __future__ import annotations
 
@@ -26,23 +26,23 @@ from cosserat_casadi.page.slider_ranges import Slider
 from cosserat_casadi.page.webassembly import NAME
 
 ALONG_LINE = 25
-"""Points at which a stretch of contact is drawn."""
+"""Number of drawn points of an interval of contact."""
 
 
 ITERATIONS, PARTS = 20 * TRACK_ITERATIONS, 20 * TRACK_PARTS
-"""Most Newton steps, and parts of the way of the inputs, for one move of a slider: as many as for a solve in C."""
+"""Largest numbers of Newton steps and of continuation steps for one move of a slider, as for a solve in C."""
 
 
 def contact_page_files(model: Model, cases: FloatArray) -> dict[str, str]:
-    """Texts of the library of a scene in exact contact, of its picture, and of the calls of a page, by file name.
+    """Source texts, by file name: library of a scene with exact contact, drawing functions, and functions for the page.
 
     Args:
-        model: of the scene without contacts.
-        cases: stacked inputs, a row for each case, shape (k, m), further columns are not read: the library knows the
-            arrangements that are met on the way to each case that has an equilibrium, one after the other.
+        model: model of the scene without contacts.
+        cases: stacked inputs, one case per row, shape (k, m); further columns are ignored. The library has the
+            arrangements on the way to each case with an equilibrium, case by case.
 
     Raises:
-        ExportError: C does not know what the scene has, or its contacts.
+        ExportError: the export to C does not support the scene or its contacts.
     """
     check_contact(model.scene, {})
     stability = model.has_potential(np.ones(model.inputs.size))
@@ -72,7 +72,7 @@ def contact_page_files(model: Model, cases: FloatArray) -> dict[str, str]:
 
 
 def ends_of_sliders(model: Model, moved: Sequence[Slider]) -> FloatArray:
-    """Stacked inputs with one slider at an end and all other inputs at the scene's own values, shape (2 k, m)."""
+    """Stacked inputs, shape (2 k, m): one slider at an end, all other inputs at the values of the scene."""
     cases = np.tile(model.pack(), (2 * len(moved), 1))
     for row, slider in enumerate(moved):
         cases[2 * row, slider.index] = slider.least
@@ -81,12 +81,12 @@ def ends_of_sliders(model: Model, moved: Sequence[Slider]) -> FloatArray:
 
 
 def drawn_kernels(chosen: Chosen, free: Model, names: Names) -> list[ca.Function]:
-    """Functions of each arrangement, (z, inputs) ↦ numbers of the picture, then points at which each contact touches.
+    """Functions of each arrangement, (z, inputs) ↦ numbers of the picture, followed by the points of each contact.
 
     Args:
-        chosen: the arrangements.
-        free: the model of the scene without contacts, whose layout the picture has.
-        names: of the library.
+        chosen: arrangements.
+        free: model of the scene without contacts, which defines the layout of the picture.
+        names: names of the library.
     """
     functions = []
     for number, equations in enumerate(chosen.equations):
@@ -99,7 +99,7 @@ def drawn_kernels(chosen: Chosen, free: Model, names: Names) -> list[ca.Function
 
 
 def _touching_points(own: ArrangementKernels, touch: Touch) -> Matrix:
-    """Centres of the sections that touch, as expressions, 3×k, m; of a body where its ball touches."""
+    """Centres of touching sections, or the contact point of the ball of a body, as expressions, 3×k, m."""
     system = own.equations.written.system
     if touch.of_body:
         (body,) = [body for body in system.discrete.scene.bodies if body.name == touch.owner]

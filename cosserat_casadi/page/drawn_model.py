@@ -1,6 +1,6 @@
-"""A model with one function more: all drawn parts of a scene, so that the compiled library draws its solution.
+"""A model with a further function for all drawn parts of a scene, for pictures from the compiled library.
 
-An ordinary folder does not have this function: it costs the scenes that are exported for a controller nothing.
+Exports for controllers do not have this function.
 """
 
 from __future__ import annotations
@@ -27,19 +27,19 @@ from cosserat_casadi.model.function_table import Expressions, Output, scene_func
 from cosserat_casadi.model.system import Arguments, System
 
 SECTIONS = np.linspace(0.0, 1.0, 49)
-"""Abscissae at which rods and actuators are drawn."""
+"""Abscissae of the drawn points of rods and actuators."""
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """One thing that is drawn.
+    """One drawn part of a scene.
 
     Attributes:
         kind: "rod" (position and quaternion of each section, 7×k), "actuator" (positions, 3×k), "body" (position and
-            quaternion, 7×1), or "arrows" (start and vector of each, 6×k); metres, and the unit of the arrows' sort.
-        name: of the rod, the actuator, the body or the load.
-        numbers: the columns.
-        sort: kind of vector that arrows stand for.
+            quaternion, 7×1), or "arrows" (start and vector of each, 6×k); in m, vectors in the unit of their sort.
+        name: name of the rod, the actuator, the body or the load.
+        numbers: columns as above.
+        sort: sort of the vectors of arrows.
     """
 
     kind: str
@@ -54,7 +54,7 @@ class Drawn:
 
 
 class DrawnModel(Model):
-    """A model that can be drawn without Python."""
+    """A model with a drawing function for use without Python."""
 
     @scene_function(
         Output("drawn"),
@@ -63,7 +63,7 @@ class DrawnModel(Model):
         "points of actuators, arrows of loads, world axes.",
     )
     def drawn(self, written: Expressions) -> list[Matrix]:
-        """(x, inputs) ↦ all numbers that a picture is made of, one column."""
+        """(x, inputs) ↦ all numbers of a picture, one column."""
         return [drawn_column(drawn_parts(written.system))]
 
 
@@ -73,7 +73,7 @@ def drawn_column(parts: Iterable[Drawn]) -> Matrix:
 
 
 def drawn_layout(model: Model) -> list[dict[str, Any]]:
-    """Where each part lies among the numbers of ``drawn``: kind, name, first entry, rows, columns, sort of arrows."""
+    """Layout of the parts in ``drawn``: kind, name, first entry, rows, columns, sort of arrows."""
     entries: list[dict[str, Any]] = []
     first = 0
     for part in _symbolic_parts(model):
@@ -87,7 +87,7 @@ def drawn_layout(model: Model) -> list[dict[str, Any]]:
 
 
 def drawn_numbers(wanted: Model, solution: Solution) -> FloatArray:
-    """The drawn parts of an equilibrium, (k,), in the layout of a model whose loads are some of the solution's."""
+    """The drawn parts of an equilibrium, shape (k,), in the layout of a model with a subset of the solution's loads."""
     arguments = Arguments(ca.DM(solution.x), ca.DM(solution.inputs))
     found = {part.key: part.numbers for part in drawn_parts(System(solution.model.discrete, arguments))}
     parts = [ca.vec(ca.densify(found[part.key])) for part in _symbolic_parts(wanted)]
@@ -100,11 +100,11 @@ def _symbolic_parts(model: Model) -> Iterator[Drawn]:
 
 
 def drawn_parts(system: System, loaded: DiscreteScene | None = None, inputs: Matrix | None = None) -> Iterator[Drawn]:
-    """All that is drawn, as expressions: rods, actuators, bodies, loads, in the order of the scene.
+    """All drawn parts, as expressions: rods, actuators, bodies, loads, in the order of the scene.
 
     Args:
-        system: of the equilibrium.
-        loaded: the scene whose loads are drawn; by default the system's, which has more loads in contact.
+        system: system of the equilibrium.
+        loaded: the scene with the drawn loads; by default that of the system, which in contact has further loads.
         inputs: stacked inputs of ``loaded``.
     """
     picture = _Picture(system, loaded or system.discrete, system.arguments.inputs if inputs is None else inputs)
@@ -128,7 +128,7 @@ def sections_of(system: System, rod: str, X: Numbers) -> tuple[Matrix, Matrix]:
 
 @dataclass(frozen=True)
 class _Picture:
-    """Expressions of the picture of a system, with the loads of a scene at these inputs."""
+    """Expressions of the picture of a system, with the loads of a scene at given inputs."""
 
     system: System
     loaded: DiscreteScene
@@ -140,7 +140,7 @@ class _Picture:
         return {rod: (self.system.nodes(rod), self.system.nodal_quaternions(rod)) for rod in self.system.shapes}
 
     def sections(self, rod: str, X: Numbers) -> tuple[Matrix, Matrix]:
-        """World positions 3×k and unit quaternions 4×k of sections: the interpolants through the nodes."""
+        """World positions 3×k and unit quaternions 4×k of sections, interpolated through the nodes."""
         grid = self.system.discrete.rods[rod].grid
         position, quaternion = self._fields[rod]
         between = grid.interpolated(quaternion, X)
@@ -148,7 +148,7 @@ class _Picture:
         return grid.interpolated(position, X), between / ca.repmat(norm, 4, 1)
 
     def routing(self, actuator: Any) -> Matrix:
-        """Points of an actuator's routing in world axes, 3×k: r + R D."""
+        """Points r + R D of an actuator's routing in world axes, 3×k."""
         X = drawn_places(actuator, SECTIONS)
         offset, _ = offset_at(actuator, X)
         position, rotations = self._rod_poses(actuator.rod, X)
@@ -157,7 +157,7 @@ class _Picture:
         return routing
 
     def arrows(self) -> Iterator[Drawn]:
-        """Arrows of all loads; a load that is always zero has none."""
+        """Arrows of all loads, without loads that are identically zero."""
         loads = LoadArrows(self.loaded, self.inputs, self._rod_poses, self._body_pose)
         for drawn in loads.drawn():
             vectors: dict[Sort, Matrix] = {"line": drawn.force}

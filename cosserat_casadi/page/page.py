@@ -1,4 +1,4 @@
-"""The page: one HTML file with everything in it."""
+"""The page: one self-contained HTML file."""
 
 from __future__ import annotations
 
@@ -28,31 +28,31 @@ from cosserat_casadi.page.slider_ranges import sliders
 from cosserat_casadi.page.webassembly import find_wasm_compiler, linked, wasm_of
 
 LARGEST = 3_000_000
-"""Bytes that a page may have: what a mail takes without a word."""
+"""Largest size of a page, bytes: within the limits of e-mail attachments."""
 
 SCRIPTS = ("symmetric_eigenvalues.js", "shapes.js", "frame_pacing.js", "scenery.js", "panel.js", "tip_dragging.js")
-"""Scripts of every page, in the order in which they are loaded; the one that solves comes after them."""
+"""Scripts of every page, in load order; the script of the solver follows."""
 
 IN_CONTACT = {"beginning": "the equilibrium at the scene's own inputs", "along_line": ALONG_LINE}
-"""Facts of a page of a scene in exact contact: from where its solver begins, points at which a line is drawn."""
+"""Further facts for a page with exact contact: start of its solver, number of drawn points of a contact line."""
 
 
 def export_page(
     solution: Solution, file: Path, asked: Given | None = None, load_cases: FloatArray | None = None
 ) -> Path:
-    """Write an equilibrium's scene as one HTML file that solves it anew wherever the sliders are.
+    """Write the scene of an equilibrium as one HTML file, which solves it for the values of the sliders.
 
     Args:
-        solution: the equilibrium at the scene's own inputs, whose discretisation the page keeps: on the model that
-            :func:`cosserat_casadi.choose` returns, the sliders can go all over the ranges.
-        file: path of the page.
-        asked: ranges of the sliders; by default the ranges that modes are chosen for.
-        load_cases: stacked inputs, a row for each case, shape (k, m): the page of a scene in exact contact knows the
-            arrangements of contacts that are met on the way to each case; by default, to both ends of every slider.
+        solution: the equilibrium at the inputs of the scene; the page has its discretisation. A model from
+            :func:`cosserat_casadi.choose` is accurate over the whole ranges of the sliders.
+        file: path of the HTML file.
+        asked: ranges of the sliders; by default those of the choice of modes.
+        load_cases: stacked inputs, one case per row, shape (k, m). A page with exact contact has the arrangements of
+            contacts on the way to each case; the default cases are both ends of every slider.
 
     Raises:
-        ExportError: there is no compiler for WebAssembly, the page would be larger than a page may be, or C does not
-            know what a scene in exact contact has.
+        ExportError: there is no compiler for WebAssembly, the page would be too large, or the export to C does not
+            support the scene with exact contact.
         WriteError: the file cannot be written.
     """
     model = page_model(solution)
@@ -73,7 +73,7 @@ def export_page(
 
 
 def page_model(solution: Solution) -> Model:
-    """The model whose inputs a page moves: contacts come and go, and their forces are no inputs."""
+    """The model for the inputs of a page, without contacts: their forces are not inputs."""
     model = solution.model
     if not model.scene.touches_exactly:
         return model
@@ -82,11 +82,11 @@ def page_model(solution: Solution) -> Model:
 
 
 def facts_of_page(solution: Solution, model: Model, asked: Given | None = None) -> dict[str, Any]:
-    """Facts of a scene for a page that solves by itself.
+    """Facts of a scene for a page with a solver.
 
     Args:
-        solution: the equilibrium at the scene's own inputs.
-        model: of :func:`page_model`.
+        solution: the equilibrium at the inputs of the scene.
+        model: result of :func:`page_model`.
         asked: ranges of the sliders.
     """
     facts = {**page_facts(solution, model, asked), **asked_accuracy(solution)}
@@ -96,7 +96,7 @@ def facts_of_page(solution: Solution, model: Model, asked: Given | None = None) 
 
 
 def asked_accuracy(solution: Solution) -> dict[str, Any]:
-    """The tolerance by which errors are judged, None where none has a meaning, and the remedy above it."""
+    """The tolerance of errors, None if none applies, and the remedy for larger errors."""
     accuracy = solution.model.scene.accuracy
     return {"tolerance": accuracy.tolerance if accuracy.binds else None, "remedy": solution.remedy}
 
@@ -105,13 +105,13 @@ def page_text(facts: dict[str, Any], engine: Sequence[str], module: bytes = b"")
     """The page of a scene.
 
     Args:
-        facts: of the scene.
-        engine: texts of the scripts that give the robot, ``openRobot``, and what else stands on it.
-        module: the solver as WebAssembly; empty where a server solves.
+        facts: facts of the scene.
+        engine: texts of the scripts that define ``openRobot``, and of dependent scripts.
+        module: the solver as WebAssembly; empty for a page with a server.
     """
     texts = [*map(asset, SCRIPTS), *engine, asset("start.js")]
     scripts = "\n".join(f"<script>\n{text}</script>" for text in texts)
-    # The time stamp of the archive is left out: the same scene makes the same page.
+    # Without the time stamp of the archive, the same scene gives the same page.
     packed = base64.b64encode(gzip.compress(module, 9, mtime=0)).decode() if module else ""
     words = {
         "title": html.escape(str(facts["title"])),
@@ -119,7 +119,7 @@ def page_text(facts: dict[str, Any], engine: Sequence[str], module: bytes = b"")
         "three": asset("three.min.js"),
         "scripts": scripts,
         "where": "here in your browser" if module else "by the program that opened this page",
-        # No text of the scene can end the element that it stands in.
+        # No text of the scene can close its HTML element.
         "facts": json.dumps(facts, ensure_ascii=False).replace("<", "\\u003c"),
         "module": packed,
     }

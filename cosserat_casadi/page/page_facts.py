@@ -1,4 +1,4 @@
-"""Facts of a scene that a page needs besides its equations, as plain data."""
+"""Facts of a scene for a page, besides its equations, as plain data."""
 
 from __future__ import annotations
 
@@ -30,23 +30,23 @@ from cosserat_casadi.plots.scenery import body_corners, places_in, target_points
 from cosserat_casadi.plots.solved_shapes import RodShapes, rod_shapes
 
 DIGITS = 6
-"""Significant digits of numbers that are only drawn."""
+"""Significant digits of numbers for drawing."""
 
 IN_PLANE = {1, 3, 5}
-"""Strains that keep a rod in the plane of its x and z: bending_y, shear_x, extension."""
+"""Indices of planar strains, in the x–z plane: bending_y, shear_x, extension."""
 
 STILL = 8
-"""Every so many of the sampled points of an unloaded rod are kept."""
+"""Stride of the kept points of an unloaded rod."""
 
 
 def page_facts(solution: Solution, model: Model | None = None, asked: Given | None = None) -> dict[str, Any]:
     """Facts of a scene for its page.
 
     Args:
-        solution: the equilibrium at the scene's own inputs.
-        model: the model whose inputs are moved; by default the solution's, which is another model where contacts were
-            found for it.
-        asked: ranges of the sliders; by default the ranges that modes are chosen for.
+        solution: the equilibrium at the inputs of the scene.
+        model: the model for the inputs of the page; by default that of the solution, which with contacts is a different
+            one.
+        asked: ranges of the sliders; by default those of the choice of modes.
     """
     model = solution.model if model is None else model
     scene = model.scene
@@ -72,9 +72,9 @@ def facts_of_every_page(model: SystemFunctions, of_inputs: Sequence[Slider], poi
     """Facts of a page of rods or of concentric tubes.
 
     Args:
-        model: whose inputs are moved.
-        of_inputs: a slider for each number of the inputs.
-        points: points that the picture must hold, shape (k, 3), m.
+        model: model for the inputs of the page.
+        of_inputs: sliders, one for each stacked input.
+        points: points within the picture, shape (k, 3), m.
     """
     scene = model.scene
     by_hand = movable(model)
@@ -93,12 +93,12 @@ def facts_of_every_page(model: SystemFunctions, of_inputs: Sequence[Slider], poi
 
 
 def _body_choice(body: scenes.Body) -> dict[str, Any]:
-    """A body as one of the things whose pose is shown, which a user may choose where results list it."""
+    """A body as an entry of the list of displayed poses, for choice by the user."""
     return {"body": body.name} if body.listed else {"body": body.name, "unlisted": True}
 
 
 def _extent_points(solution: Solution, points: FloatArray) -> FloatArray:
-    """Points that a picture must hold: rods, bodies and targets."""
+    """Points within the picture: rods, bodies and targets."""
     scene = solution.model.scene
     parts = [points]
     parts += [solution.body(body.name).position[None] for body in scene.bodies]
@@ -107,7 +107,7 @@ def _extent_points(solution: Solution, points: FloatArray) -> FloatArray:
 
 
 def _rod(scene: scenes.Scene, rod: scenes.Rod, index: int) -> dict[str, Any]:
-    """Colour, and the size of the sections along the rod: half widths along the section's x and y, m."""
+    """Colour, and half widths of the sections along x and y, m, along a rod."""
     described: dict[str, Any] = {"colour": rod_colour(index), "carried": rod.base.rod is not None}
     described |= _section(rod.section)
     # The middle of each disk, X, with its radius and thickness, m.
@@ -116,12 +116,12 @@ def _rod(scene: scenes.Scene, rod: scenes.Rod, index: int) -> dict[str, Any]:
     inside = [
         actuator for actuator in scene.actuators if actuator.rod == rod.name and _runs_inside(actuator, described)
     ]
-    # What runs inside is seen through the rod.
+    # Rods with actuators inside are drawn transparent.
     return described | {"see_through": bool(inside)}
 
 
 def _section(section: scenes.Section | None) -> dict[str, Any]:
-    """Shape and half widths of the sections that are drawn; nothing of a rod that is drawn by its centre line."""
+    """Shape and half widths of the drawn sections; empty for a rod drawn as its centre line."""
     half_widths = half_widths_along(section, SECTIONS)
     if section is None or half_widths is None:
         return {}
@@ -130,7 +130,7 @@ def _section(section: scenes.Section | None) -> dict[str, Any]:
 
 
 def _runs_inside(actuator: Any, rod: dict[str, Any]) -> bool:
-    """Whether the routing of an actuator lies within the sections that are drawn."""
+    """Whether the routing of an actuator lies within the drawn sections."""
     if not hasattr(actuator, "offset") or "shape" not in rod:
         return False
     offset, _ = offset_at(actuator, SECTIONS)
@@ -143,12 +143,12 @@ def _actuator(actuator: Any, index: int) -> dict[str, Any]:
 
 
 def _body(scene: scenes.Scene, body: Any) -> dict[str, Any]:
-    """Corners of the polygon that stands for a body, and its joints, in its own axes, m."""
+    """Corners of the polygon of a body, and its joints, in body axes, m."""
     return {"corners": rounded(body_corners(scene, body)), "joints": rounded(places_in(scene, body.name))}
 
 
 def _obstacle(obstacle: scenes.ObstacleRecord, solution: Solution, shapes: RodShapes) -> dict[str, Any]:
-    """A net of points on the surface of an obstacle, rows of points, m; an endless surface is shown about the rods.
+    """A net of points on the surface of an obstacle, rows of points, m; an unbounded surface only near the rods.
 
     The net of an obstacle on a body is in the axes of the body.
     """
@@ -164,8 +164,8 @@ def _colours() -> dict[str, str]:
 
 
 def _stability(model: Model) -> dict[str, Any] | None:
-    """Variations of the second variation; None where it has no meaning for all inputs that sliders can give."""
-    # Ones: no input is left out for being zero at the moment.
+    """Variations of the second variation; None if it is undefined for some inputs of the sliders."""
+    # Inputs are set to one, so that none is ignored as zero.
     if not model.has_potential(np.ones(model.inputs.size)):
         return None
     allowed = variations(model)
@@ -173,5 +173,5 @@ def _stability(model: Model) -> dict[str, Any] | None:
 
 
 def rounded(values: FloatArray) -> Any:
-    """Numbers with few digits, as nested lists."""
+    """Numbers with DIGITS significant digits, as nested lists."""
     return np.vectorize(lambda value: float(f"{value:.{DIGITS}g}"), otypes=[float])(values).tolist()

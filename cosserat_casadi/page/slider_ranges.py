@@ -1,4 +1,4 @@
-"""Sliders: one for each number of the inputs, over the range that modes are chosen for."""
+"""Sliders, one for each stacked input, over the range of the choice of modes."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from cosserat_casadi.scene.input_fields import column_suffixes
 
 @dataclass(frozen=True)
 class Slider:
-    """One number of the inputs that a reader may move.
+    """Slider of one stacked input.
 
     Attributes:
         input: name of the input, ``owner.field``.
-        label: text beside the slider: the axis of a vector, the degree of a polynomial; may be empty.
+        label: text beside the slider, e.g. the axis of a vector or the degree of a polynomial; may be empty.
         unit: SI unit.
         index: entry of the stacked inputs.
-        value: value of the scene.
+        value: value in the scene.
         least: left end.
         most: right end.
     """
@@ -37,12 +37,12 @@ class Slider:
 def sliders(model: Model, asked: Given | None = None) -> list[Slider]:
     """A slider for each entry of the stacked inputs, in their order.
 
-    It covers the range that modes are chosen for; an entry that keeps its value there has the range that it has in a
-    scene whose modes are not chosen yet.
+    Its range is that of the choice of modes. An entry that is constant there has the default range of a scene without
+    chosen modes.
 
     Args:
-        model: whose inputs are moved.
-        asked: ranges that are asked for, as of :func:`cosserat_casadi.choose`.
+        model: model for the inputs.
+        asked: requested ranges, as for :func:`cosserat_casadi.choose`.
     """
     scene = model.scene
     ranges = input_ranges(scene, asked)
@@ -53,7 +53,7 @@ def sliders(model: Model, asked: Given | None = None) -> list[Slider]:
     for entry, span in model.inputs:
         for k, suffix in zip(range(span.start, span.stop), column_suffixes(*entry.shape), strict=True):
             value = float(ranges.layout.default[k])
-            # The scene's own value lies on the slider, wherever the ends are.
+            # The range includes the value of the scene.
             least = min(float(ranges.lower[k]), value)
             most = max(float(ranges.upper[k]), value)
             label = suffix.removeprefix(".")
@@ -62,7 +62,7 @@ def sliders(model: Model, asked: Given | None = None) -> list[Slider]:
 
 
 def movable(model: SystemFunctions) -> list[str]:
-    """Inputs that dragging the tip moves: inputs with bounds, else inputs of actuators and of tubes, else all."""
+    """Inputs for dragging the tip: inputs with bounds, else inputs of actuators and of tubes, else all."""
     bounded = {bound.input for bound in model.scene.bounds}
     drives = {owner.name for owner in (*model.scene.actuators, *model.scene.tubes)}
     of_drives = {entry.name for entry, _ in model.inputs if entry.owner in drives and not entry.of_rod}

@@ -1,4 +1,4 @@
-"""The exported solver as WebAssembly: clang with the C library of WASI, everything linked in, nothing imported."""
+"""The exported solver as WebAssembly, by clang with the C library of WASI, fully linked, without imports."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.page.drawn_model import DrawnModel
 
 VARIABLE = "COSSERAT_CASADI_WASM_CC"
-"""Environment variable that names the compiler, such as the clang of the WASI SDK."""
+"""Environment variable for the path of the compiler, such as the clang of the WASI SDK."""
 
 REMEDY = (
     "a page needs clang, lld and wasi-libc (Debian and Ubuntu: apt install clang lld wasi-libc "
@@ -25,13 +25,13 @@ REMEDY = (
 )
 
 STACK = 1 << 20
-"""Bytes of the stack: far more than the deepest function of the solver needs."""
+"""Size of the stack, bytes: far above the need of the solver."""
 
 FLAGS = (
     "--target=wasm32-wasi",
     "-O2",
     "-std=c99",
-    # Products and sums are rounded one by one, as other compilers do without being told.
+    # Products and sums are rounded separately, the default of other compilers.
     "-ffp-contract=off",
     "-nostartfiles",
     "-Wl,--no-entry",
@@ -44,10 +44,10 @@ PROBE = """#include <math.h>
 #include <string.h>
 __attribute__((export_name("probe"))) double probe(double x, char *text) { return sin(x) * (double)strlen(text); }
 """
-"""A program that needs of the compiler what every page needs: mathematics and strings."""
+"""Test program for the compiler, with the needs of every page: mathematics and strings."""
 
 NAME = "robot"
-"""Prefix of the symbols of the library inside a page; nobody outside sees it."""
+"""Prefix of the symbols of the library inside a page."""
 
 
 def find_wasm_compiler() -> str:
@@ -69,7 +69,7 @@ def find_wasm_compiler() -> str:
 
 @cache
 def _fault_of(compiler: str) -> str:
-    """Message of a compiler on a small program; empty where it compiles that to WebAssembly."""
+    """Error message of a compiler for the test program; empty if it compiles to WebAssembly."""
     try:
         _compiled(compiler, {"probe.c": PROBE}, ["probe.c"])
     except ExportError as error:
@@ -78,10 +78,10 @@ def _fault_of(compiler: str) -> str:
 
 
 def wasm_of(model: DrawnModel, compiler: str) -> bytes:
-    """The library of a model as a WebAssembly module that imports nothing.
+    """The library of a model as a WebAssembly module without imports.
 
     Args:
-        model: the model with its picture.
+        model: the model with its drawing function.
         compiler: path of a clang for WebAssembly.
 
     Raises:
@@ -95,10 +95,10 @@ def wasm_of(model: DrawnModel, compiler: str) -> bytes:
 
 
 def linked(files: Mapping[str, str], compiler: str) -> bytes:
-    """A library, with the calls of a page in page.c, as a WebAssembly module that imports nothing.
+    """A library, with the functions for the page in page.c, as a WebAssembly module without imports.
 
     Args:
-        files: texts of sources and headers by name.
+        files: texts of sources and headers, by name.
         compiler: path of a clang for WebAssembly.
 
     Raises:

@@ -1,7 +1,7 @@
 """Rods in one arrangement of contacts: a curve in y = (z, λ), and the margins and eigenvalues at its points.
 
 z = (x, f, p) are the unknowns of equilibrium/contact/contact_equations.py. The margins along the curve are functions of
-the positions of the nodes, which move with the places of contact: no model is built on the way.
+the positions of the nodes, which move with the places of contact: no model is built for a point.
 """
 
 from __future__ import annotations
@@ -37,10 +37,11 @@ from cosserat_casadi.paths.gaps_along import GapsAlong
 from cosserat_casadi.rod.strain import DiscreteRod
 
 EQUILIBRATIONS = 6
-"""Times that rows and columns are made of one size."""
+"""Rounds of scaling rows and columns."""
 
 SINGULAR = 1e-13
-"""Singular value, relative to the largest, that is zero: a short line has some as small as the cube of its width."""
+"""Singular value, relative to the largest, that counts as zero: a short line has some in proportion to its width
+cubed."""
 
 
 ANGULAR = (0, 1, 2)
@@ -53,10 +54,10 @@ class Nodes:
 
     Attributes:
         positions: world axes, shape (M, 3), m.
-        rates: their derivatives with the coordinate that integrals run over, shape (M, 3), m.
+        rates: their derivatives by the coordinate of the integrals, shape (M, 3), m.
         quaternions: world_Q_section, shape (M, 4).
-        curvatures: by the internal moment, in the sections' frames, shape (M, 3), 1/m; curvatures that the rod does not
-            admit are those of the unloaded rod.
+        curvatures: curvatures from the internal moment, section axes, shape (M, 3), 1/m; curvatures that the rod does
+            not admit have their unloaded values.
     """
 
     positions: FloatArray
@@ -71,12 +72,12 @@ class Arrangement:
 
     Attributes:
         equations: equations with its contacts, at the inputs and parameters of load factor 0.
-        change: stacked inputs of the scene, and parameters behind them where these move too, at load factor 1 less
-            their values at 0. Parameters change no length, no section and no obstacle.
+        change: stacked inputs of the scene, followed by parameters if these move too, at load factor 1 less their
+            values at 0. Parameters change no length, no section and no obstacle.
         potential: whether all loads have a potential along the path.
         settings: limits of the curve.
-        near: z where the arrangement begins, or nearly so.
-        load_factor: λ there.
+        near: z at or near the beginning of the arrangement.
+        load_factor: λ at this z.
     """
 
     equations: ContactEquations
@@ -93,12 +94,12 @@ class Arrangement:
 
     @property
     def tolerance(self) -> float:
-        """Depth, pull and the like, relative, up to which it is valid."""
+        """Relative depth, pull and the like up to which the arrangement is valid."""
         return max(self.scene.accuracy.tolerance, LEAST_TOLERANCE)
 
     @cached_property
     def following(self) -> dict[str, str]:
-        """Rods that go on where others end, by the names of these."""
+        """Rods that continue others, by the names of the others."""
         return continuations(self.scene)
 
     def at(self, load_factor: float) -> ContactEquations:
@@ -112,12 +113,12 @@ class Arrangement:
 
     @cached_property
     def _changes(self) -> tuple[FloatArray, FloatArray]:
-        """Changes of inputs, and of parameters; none where they stay."""
+        """Changes of inputs, and of parameters; empty if parameters stay."""
         inputs, parameters = np.split(self.change, [len(self.equations.given)])
         return inputs, parameters
 
     def rate(self, z: FloatArray, load_factor: float) -> FloatArray:
-        """Derivative of the residual with the load factor."""
+        """Derivative of the residual by the load factor."""
         inputs, parameters = self._changes
         if parameters.size:
             theta = self.equations.theta
@@ -126,10 +127,10 @@ class Arrangement:
 
     @cached_property
     def _scales(self) -> tuple[FloatArray, FloatArray]:
-        """Units of z along the curve, and what each equation is multiplied by where linear systems are solved.
+        """Units of z along the curve, and factors on the equations in linear systems.
 
-        A short line of contact has forces that hardly tell on the rod, and moments of the gap that hardly tell of it:
-        their columns and rows are made as large as the others (D. Ruiz, RAL-TR-2001-034).
+        A short line of contact has forces with little effect on the rod, and moments of the gap with little dependence
+        on it: their columns and rows are scaled to the size of the others (D. Ruiz, RAL-TR-2001-034).
         """
         nominal = self.equations.nominal
         size = nominal.model.size
@@ -138,9 +139,9 @@ class Arrangement:
         rate = self.rate(self.near, self.load_factor)
         load = float(np.linalg.norm(rate[:size]))
         scale = np.ones(len(self.near))
-        # So that a strain counts as the angle by which its element turns, however wide that comes to be.
+        # A strain counts as the angle by which its element turns, for every width of the element.
         scale[:size] = 1.0 / self.equations.nominal_widths
-        # Otherwise a strong load on a held rod would make a long way of small steps.
+        # Otherwise a strong load on a held rod would need many small steps.
         scale[variations(nominal.model).held] = max(1.0, load)
         matrix = np.abs(here.jacobian(self.near, here.given)) * scale
         rows = np.ones(len(matrix))
@@ -149,7 +150,7 @@ class Arrangement:
             columns = _inverse((rows[:, None] * matrix)[:, forces].max(axis=0))
             matrix[:, forces] *= columns
             scale[forces] *= columns
-        # A force that tells counts relative to the load, as those of supports do.
+        # A force with an effect counts relative to the load, as multipliers of supports do.
         scale[forces] = np.maximum(scale[forces], max(1.0, load))
         return scale, rows
 
@@ -160,7 +161,7 @@ class Arrangement:
 
     @cached_property
     def curve(self) -> Curve:
-        """The curve of the scaled equations in y; the start of its path is not read."""
+        """The curve of the scaled equations in y; the start of its path is ignored."""
         scale, rows = self._scales
         path = Path(
             residual=lambda y, t: self.at(t).equations.residual(scale * y),
@@ -171,7 +172,7 @@ class Arrangement:
         monitor = DETERMINANT
         if self.potential:
             monitor = Monitor(self._eigenvalues, feels_limits=True)
-        # To the last digit: of a short line a small residual leaves much of its forces open.
+        # Solved to the last digit, since a small residual does not determine the forces of a short line.
         settings = replace(self.settings, aim=0.0)
         return Curve(path, monitor, settings, rows, SINGULAR)
 
@@ -180,7 +181,7 @@ class Arrangement:
         return self.scale * point.x
 
     def y(self, z: FloatArray, load_factor: float) -> FloatArray:
-        """The point of the curve's space that holds z and λ."""
+        """The point y of the curve's space for z and λ."""
         return np.append(z / self.scale, load_factor)
 
     def state(self, z: FloatArray) -> ContactState:
@@ -189,7 +190,7 @@ class Arrangement:
         return self.equations.state.at(places.tolist())
 
     def equilibrium_at(self, z: FloatArray, load_factor: float) -> ContactEquilibrium:
-        """A point of the curve solved on new elements, which answers all questions that a solution answers."""
+        """A point of the curve, solved on new elements, with all that a solution offers."""
         equations = self.at(load_factor)
         return contact_equilibrium(equations, z, equations.given)
 
@@ -202,14 +203,14 @@ class Arrangement:
         return float(model.resolution_index(x, inputs, *places))
 
     def parts(self, z: FloatArray) -> Iterator[tuple[Touch, FloatArray, FloatArray]]:
-        """Each contact where it is, the forces at its ends and the coefficients of that along it, without unit."""
+        """Each contact at its place, with dimensionless forces at sections and coefficients of the force along it."""
         _, forces, _ = self.equations.parts(z)
         modes = self.equations.nominal.modes
         return self.state(z).with_forces(forces, modes)
 
     @cached_property
     def _poses(self) -> ca.Function:
-        """(x, f, p and parameters, inputs) ↦ what :class:`Nodes` holds of every rod, one column a node."""
+        """(x, f, p and parameters, inputs) ↦ fields of :class:`Nodes` for every rod, one column for each node."""
         written = self.equations.written
         results: list[Matrix] = []
         for name, shape in written.system.shapes.items():
@@ -240,21 +241,21 @@ class Arrangement:
         return self.equations.ends(rod, self.equations.parts(z)[2])
 
     def gaps(self, z: FloatArray, load_factor: float) -> dict[tuple[str, str], GapsAlong]:
-        """Distances of rods from the obstacles that they must not enter, by the names of rod and obstacle."""
+        """Distances of rods from their obstacles, by the names of rod and obstacle."""
         nodes = self._nodes(z, load_factor)
         bodies = self.bodies(z, load_factor)
         gaps = {}
         for rod, obstacle in pairs(self.scene):
             discrete_rod = self.equations.nominal.model.discrete.rods[rod]
             ends = self.ends(rod, z)
-            # The rate with the abscissa, which moved elements stretch.
+            # The derivative by the abscissa, which moved elements stretch.
             moved = np.diff(ends) / np.diff(discrete_rod.discretisation.breaks)
             by_element = (discrete_rod.grid.elements, -1, 3)
             tangents = nodes[rod].rates.reshape(by_element) / moved[:, None, None]
             positions = nodes[rod].positions
             bends = self._bends(rod, nodes[rod], tangents, ends)
             if obstacle.body is not None:
-                # The obstacle sees the rod from its body.
+                # Positions are in the axes of the obstacle's body.
                 body = bodies[obstacle.body]
                 positions = in_axes_of(body, positions)
                 tangents = tangents @ body.rotation
@@ -272,11 +273,10 @@ class Arrangement:
         return gaps
 
     def _bends(self, rod: str, nodes: Nodes, tangents: FloatArray, ends: FloatArray) -> FloatArray:
-        """Second derivatives of the positions with X, shape (E, N + 1, 3), but for what lies along the tangent.
+        """Second derivatives of the positions by X, shape (E, N + 1, 3), without parts along the tangent.
 
-        Curvature follows from the moment, which at the end of an element is known to more digits than the strain's
-        polynomial, a mean over the element. Under actuators, and of materials that are not linear, the polynomial is
-        taken.
+        Curvatures follow from the moment, which is more accurate at the end of an element than the strain's polynomial,
+        a mean over the element. With actuators, and for nonlinear materials, the polynomial is taken.
         """
         discrete_rod = self.equations.nominal.model.discrete.rods[rod]
         intervals = discrete_rod.grid.intervals
@@ -308,7 +308,7 @@ class Arrangement:
         return {body.name: pose for body, pose in zip(self.scene.bodies, poses, strict=True)}
 
     def body_gaps(self, z: FloatArray, load_factor: float) -> dict[tuple[str, str], float]:
-        """Distances of bodies from the obstacles that they must not enter, by the names of body and obstacle."""
+        """Distances of bodies from their obstacles, by the names of body and obstacle."""
         pairs_of_bodies = list(body_pairs(self.scene))
         if not pairs_of_bodies:
             return {}
@@ -319,7 +319,7 @@ class Arrangement:
         return gaps
 
     def _length_of(self, body: scenes.Body) -> float:
-        """Length that distances of a body are relative to, m."""
+        """Unit of distances of a body, m."""
         return self.equations.nominal.model.discrete.body_frame(body.name).length
 
     def goes_through(self, start: ArcPoint, end: ArcPoint) -> bool:
@@ -349,7 +349,7 @@ class Arrangement:
     def _seen_sections(
         self, z: FloatArray, load_factor: float, rod: str, obstacle: scenes.ObstacleRecord
     ) -> FloatArray:
-        """Positions of the sections of a rod that are looked at, as an obstacle sees them, shape (k, 3), m."""
+        """Positions of the checked sections of a rod in the axes of an obstacle, shape (k, 3), m."""
         positions = self.poses(z, load_factor, SECTIONS, rod).position
         if obstacle.body is None:
             return positions
@@ -373,7 +373,7 @@ class Arrangement:
         size = self.equations.nominal.model.size
         count = len(self.equations.nominal.force_units)
         moved = self.equations.moved_strains(self.equations.parts(z)[2])
-        # Strains count per length of the rod, as where elements do not move.
+        # Strains count per length of the rod, as for elements that do not move.
         scale, row_factors = self._scales
         by_x = (jacobian / scale / row_factors[:, None])[:, :size] * moved
         hessian = moved[:, None] * by_x[:size]
@@ -400,7 +400,7 @@ def _curvatures(rod: DiscreteRod, moment: Matrix) -> Matrix:
     """Curvatures at the nodes of a rod that obeys Hooke's law, 3×M, 1/m.
 
     Args:
-        rod: whose nodes may have moved, and whose numbers may be parameters.
+        rod: the rod, with nodes that may have moved and numbers that may be parameters.
         moment: internal moment at the nodes, 3×M, N m.
     """
     stiffness = as_matrix(rod.properties.hooke(rod.grid.nodes))

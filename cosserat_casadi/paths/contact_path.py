@@ -1,4 +1,4 @@
-"""Equilibrium paths of scenes with obstacles: one arrangement of contacts is followed until it ends, then the next.
+"""Equilibrium paths in exact contact: one arrangement of contacts is followed to its end, then the next one.
 
 See docs/contact.md, "Paths", and contact_transitions.py for how one leads to another.
 """
@@ -43,21 +43,21 @@ MOST_CHANGES = 100
 """Most changes of the arrangement along a path."""
 
 AT_ONCE = 1e-9
-"""Load factor and places within which two changes in a row have led nowhere."""
+"""Differences of load factor and places below which two successive changes have made no progress."""
 
 AT_SECTION = 1e-4
-"""Distance of a place of contact from a section with a load at which a path that ends has been stopped by it."""
+"""Distance of a place of contact from a section with a load below which the load has stopped the path."""
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class ContactPath(EquilibriumPath):
-    """A path along which contacts come, go, slide and turn from points into lines and back.
+    """A path along which contacts come, go, slide and change between points and lines.
 
     Attributes:
-        x: of each point its unknowns, forces and places of contact: an array of k arrays, for their number changes
-            with the contacts.
+        x: unknowns, forces and places of contact of each point: an array of k arrays, since their size changes with the
+            contacts.
         arrangements: the arrangements of contacts that the path passes, one after the other.
-        arrangement: number of the one that each point belongs to, shape (k,).
+        arrangement: index of the arrangement of each point, shape (k,).
     """
 
     arrangements: tuple[Arrangement, ...] = ()
@@ -65,13 +65,14 @@ class ContactPath(EquilibriumPath):
 
     @property
     def resolution_indices(self) -> FloatArray:
-        """Resolution index at all points, shape (k,): one above 1 is not resolved, as a solve would not be."""
+        """Resolution index at all points, shape (k,): a point with an index above 1 is not resolved."""
         return np.array([self.arrangements[number].resolution_index(z, factor) for z, factor, number in self._points])
 
     @property
     def stretches(self) -> list[range]:
-        """Indices of the points between one event and the next, all of one arrangement."""
-        # The event of a change of contact may be the first point of the next arrangement, and lie before what follows.
+        """Indices of the points between successive events, all of one arrangement."""
+        # The event of a change of contact may be the first point of the next arrangement, before the points that
+        # follow.
         changes = np.flatnonzero(np.diff(self.arrangement)) + 1
         others = [event.position for event in self.events if event.contact is None]
         bounds = [0, *sorted([*changes.tolist(), *others]), len(self.factor)]
@@ -88,16 +89,16 @@ class ContactPath(EquilibriumPath):
         return tuple(contacts)
 
     def solution(self, index: int) -> Solution:
-        """A point of the path as a solution with its contacts, judged as any other."""
+        """A point of the path as a solution with its contacts, judged like any other."""
         found = self.arrangements[self.arrangement[index]].equilibrium_at(self.x[index], float(self.factor[index]))
         return judged(found, holds=True, iterations=0, tolerance=NewtonSettings().tolerance)
 
     def shape(self, index: int, x: FloatArray, factor: float) -> Solution:
-        """The equilibrium with unknowns, forces and places of a point, or near them at another factor, not judged."""
+        """The equilibrium, not judged, with unknowns, forces and places of a point, or near them at another factor."""
         return self.arrangements[int(self.arrangement[index])].equilibrium_at(x, float(factor)).solution
 
     def event_shape(self, event: PathEvent) -> Solution:
-        """The equilibrium at an event with its contacts, not judged."""
+        """The equilibrium, not judged, at an event with its contacts."""
         return self.arrangements[event.arrangement].equilibrium_at(event.x, event.factor).solution
 
     def _corrected(self, index: int, start: FloatArray, factor: float) -> FloatArray | None:
@@ -121,7 +122,7 @@ class ContactPath(EquilibriumPath):
 
     @property
     def stopped_at(self) -> str:
-        """A sentence on a place that has come to where a load or another rod acts on its rod; empty where none has."""
+        """A sentence on a place of contact that has reached a load or another rod on its rod; empty if none has."""
         if self.outcome is not PathOutcome.LOAD_STALLED or not len(self.factor):
             return ""
         arrangement = self.arrangements[int(self.arrangement[-1])]
@@ -138,10 +139,10 @@ class ContactPath(EquilibriumPath):
 
 @dataclass
 class Guard:
-    """Ends the steps of a path where a margin of its arrangement vanishes.
+    """Guard that ends steps of a path at a zero of a margin of its arrangement.
 
     Attributes:
-        arrangement: the one that is followed.
+        arrangement: the arrangement that is followed.
         crossed: the margin that has vanished, with its abscissa; None while all are positive.
     """
 
@@ -149,7 +150,7 @@ class Guard:
     crossed: tuple[Key, float] | None = None
 
     def __call__(self, arc: Arc, end: ArcPoint) -> ArcPoint | None:
-        """The end of a step, or the first point of it at which a margin vanishes; None for a step that is too long."""
+        """The end of a step, or its first point with a margin of zero; None for a step that is too long."""
         arrangement = self.arrangement
         at_start = margins(arrangement, arrangement.z(arc.start), arc.start.load_factor)
         at_end = margins(arrangement, arrangement.z(end), end.load_factor)
@@ -157,7 +158,7 @@ class Guard:
         for key in violated(at_end, arrangement.tolerance):
             before = at_start.get(key)
             if before is None or before.value <= 0.0:
-                # It was zero, to rounding, already where the step begins.
+                # It was zero to rounding already at the start of the step.
                 zero: ArcPoint | None = arc.start
             else:
                 zero = self._zero(Arc(arc.curve, arc.start, end), key)
@@ -169,13 +170,13 @@ class Guard:
                 self.crossed = (key, X)
         if first is not None:
             return first
-        # It may have come out on the other side of a thin obstacle.
+        # The rod may have passed a thin obstacle.
         if arrangement.goes_through(arc.start, end):
             return None
         return end
 
     def _zero(self, arc: Arc, key: Key) -> ArcPoint | None:
-        """Where a margin vanishes along a step."""
+        """The point at which a margin vanishes along a step."""
 
         def value(point: ArcPoint) -> float:
             found = margins(self.arrangement, self.arrangement.z(point), point.load_factor)
@@ -186,17 +187,17 @@ class Guard:
 
 @dataclass
 class Travel:
-    """The part of the path that has been followed so far.
+    """The followed part of a path.
 
     Attributes:
         settings: limits.
-        branch: number of the bifurcation to leave at, as in :func:`cosserat_casadi.follow`; 0 once left.
-        arrangements: in the order of travel.
-        points: with the number of the arrangement of each.
-        events: in the order of travel.
-        outcome: how it ended; None while under way.
+        branch: number of the bifurcation at which to leave, see :func:`cosserat_casadi.follow`; 0 after leaving.
+        arrangements: arrangements in the order of travel.
+        points: points, with the index of the arrangement of each.
+        events: events in the order of travel.
+        outcome: how the path ended; None before its end.
         left_at: index of the first point on the branch.
-        steps: steps that were tried.
+        steps: number of tried steps.
     """
 
     settings: ArcSettings
@@ -239,7 +240,7 @@ class Travel:
         self._keep(traced)
 
     def _to_leave_at(self, traced: Trace) -> int:
-        """Number, counted in this arrangement, of the bifurcation to leave at."""
+        """Number, counted in this arrangement, of the bifurcation at which to leave."""
         if not self.branch or traced.branch is not None:
             return 0
         before = sum(event.kind == "bifurcation" for event in self.events)
@@ -257,7 +258,7 @@ class Travel:
         self.outcome = traced.outcome
 
     def _change(self, guard: Guard) -> ArrangementEntry | None:
-        """Enter the next arrangement; None where none is valid."""
+        """Enter the next arrangement; None if none is valid."""
         assert guard.crossed is not None
         key, X = guard.crossed
         arrangement = self.arrangements[-1]
@@ -272,7 +273,7 @@ class Travel:
         return None
 
     def _keep_change(self, entry: ArrangementEntry, last: ArcPoint) -> None:
-        """Add the event of a change: its equilibrium is the last point before it, or the first one beyond."""
+        """Add the event of a change, with the equilibrium of the last point before it or the first point after it."""
         number = len(self.arrangements) - 1
         point = last
         arrangement = self.arrangements[-1]
@@ -314,7 +315,7 @@ def follow_contact_path(
     """Follow the equilibrium of a scene with obstacles, from one arrangement of contacts to the next.
 
     Args:
-        moved: the way of inputs, and of parameters if the model has any.
+        moved: the change of inputs, and of parameters if the model has any.
         branch: as in :func:`cosserat_casadi.follow`.
         settings: limits.
         progress: receives the largest factor reached.

@@ -1,9 +1,10 @@
-"""Transitions between arrangements of contacts where a margin vanishes: who touches, lets go, lies down or slides.
+"""Transitions between arrangements of contacts at zeros of margins: touch, lift-off, points to lines, sliding.
 
-Each change has one arrangement on either side that share the equilibrium between them. Where both are regular there,
-the next one is met at the same load factor. A line begins without length and a place leaves the tip without distance,
-where the equations of the next arrangement are singular: it is met where that length is a little more. What ends so, a
-line that shrinks or a place that comes to the tip, is left a little before, and its end is found along what comes next.
+The arrangements before and after a change share the equilibrium at the change. If both are regular, the next one is
+entered at this load factor. A line begins with zero length and a place leaves the tip with zero distance, where the
+equations of the next arrangement are singular: it is entered where that length is slightly larger. An arrangement that
+ends in this way, by a line that shrinks or a place that comes to the tip, is left slightly before, and its end is
+computed along the next one.
 """
 
 from __future__ import annotations
@@ -26,10 +27,10 @@ WIDER = 4.0
 """Width, in units of the least one, with which a line or a distance from the tip begins."""
 
 PROBE = 1e-3
-"""Step along the next arrangement that says which way leads into it."""
+"""Step along the next arrangement that decides which direction leads into it."""
 
 MOST_PROBES = 40
-"""Steps in search of where the next arrangement begins: longer ones and, round corners, shorter ones."""
+"""Step lengths in the search for the beginning of the next arrangement, shorter ones for corners."""
 
 
 @dataclass(frozen=True)
@@ -37,13 +38,13 @@ class Transition:
     """The next arrangement of contacts after a margin has vanished.
 
     Attributes:
-        kind: word of the event.
-        touch: the contact that changes.
+        kind: kind of the event.
+        touch: the contact before the change.
         state: the next contacts.
-        grows: the margin of the next arrangement that is zero at the change and grows beyond it.
-        opens: entries of the places that the next arrangement is met by, with factors; none where the load factor is.
-        level: value of their sum there.
-        located: whether the change lies where that margin vanishes along the next arrangement.
+        grows: the margin of the next arrangement that is zero at the change and grows after it.
+        opens: entries of the places, with factors, whose sum defines the point of entry; empty if the load factor does.
+        level: value of their sum at the point of entry.
+        located: whether the change is at the zero of that margin along the next arrangement.
     """
 
     kind: str
@@ -57,13 +58,13 @@ class Transition:
 
 @dataclass(frozen=True)
 class ArrangementEntry:
-    """Where a path enters an arrangement.
+    """The entry of a path into an arrangement.
 
     Attributes:
-        change: from the one before.
+        change: transition from the arrangement before.
         arrangement: the next one.
         point: the first point, whose tangent leads into the arrangement.
-        is_event: whether it is the change itself; else the last point of the arrangement before is.
+        is_event: whether this point is the change itself; else the last point of the arrangement before is.
     """
 
     change: Transition
@@ -73,10 +74,10 @@ class ArrangementEntry:
 
 
 def changes(arrangement: Arrangement, z: FloatArray, key: Key, X: float) -> Iterator[Transition]:
-    """Transitions to other arrangements where a margin vanishes, the likeliest first.
+    """Transitions to other arrangements at a zero of a margin, the likeliest first.
 
     Args:
-        arrangement: the one that ends.
+        arrangement: the arrangement that ends.
         z: its last point.
         key: the margin.
         X: abscissa that it belongs to.
@@ -129,14 +130,14 @@ def _number(state: ContactState, touch: Touch) -> int:
 
 
 def _added(state: ContactState, touch: Touch) -> Transition:
-    """A contact more, whose force grows from zero."""
+    """Transition with an additional contact, whose force grows from zero."""
     following = ContactState.of([*state.touches, touch])
     grows = Key(Watch.FORCE, _number(following, touch), (touch.owner, touch.obstacle))
     return Transition("touch", touch, following, grows)
 
 
 def _replaced(kind: str, old: Touch, others: list[Touch], new: Touch, watch: Watch) -> Transition:
-    """A contact of another kind, which begins where one of its margins vanishes."""
+    """Transition to a contact of another kind, which begins at a zero of one of its margins."""
     following = ContactState.of([*others, new])
     last = len(new.carriers) - 1 if watch is Watch.FORCE else 0
     grows = Key(watch, _number(following, new), (new.owner, new.obstacle), last)
@@ -144,33 +145,33 @@ def _replaced(kind: str, old: Touch, others: list[Touch], new: Touch, watch: Wat
 
 
 def _passed_on(old: Touch, others: list[Touch], new: Touch, watch: Watch) -> Transition:
-    """A point on the next rod of a chain, met a little beyond the joint."""
+    """Transition of a point to the next rod of a chain, entered slightly beyond the joint."""
     following = ContactState.of([*others, new])
     grows = Key(watch, _number(following, new), (new.owner, new.obstacle))
     return Transition("slide_over_joint", old, following, grows, ((new, 0, 1.0),), float(new.start))
 
 
 def _opened(kind: str, old: Touch, others: list[Touch], new: Touch) -> Transition:
-    """Transition to a contact with one more place to seek, met a little away from its other place, or from the tip."""
+    """Transition to a contact with one more unknown place, entered slightly off its other place, or the tip."""
     following = ContactState.of([*others, new])
     number = _number(following, new)
     pair = (new.owner, new.obstacle)
     if new.is_line and not new.reaches_tip and old.kind == "point":
         opens = ((new, 0, -1.0), (new, 1, 1.0))
         return Transition(kind, old, following, Key(Watch.WIDTH, number, pair), opens, WIDER * OPEN)
-    # The last place that is sought, counted from the tip.
+    # Index of the last unknown place.
     last = len(new.moving) - 1
     watch = Watch.WIDTH if new.is_line and new.reaches_tip else Watch.TO_TIP
     return Transition(kind, old, following, Key(watch, number, pair), ((new, last, 1.0),), TIP - WIDER * OPEN)
 
 
 def entered(arrangement: Arrangement, point: ArcPoint, change: Transition) -> ArrangementEntry | None:
-    """The next arrangement where the path enters it; None where it is not valid there.
+    """The entry of the path into the next arrangement; None if this is not valid there.
 
     Args:
-        arrangement: the one that ends.
+        arrangement: the arrangement that ends.
         point: its last point.
-        change: into the next.
+        change: transition to the next one.
     """
     change = _split(change, load_sections(arrangement.scene))
     if not change.state.in_order:
@@ -198,13 +199,13 @@ def entered(arrangement: Arrangement, point: ArcPoint, change: Transition) -> Ar
 
 
 def _split(change: Transition, sections: Mapping[str, Sequence[float]]) -> Transition:
-    """This transition with seams in lines where loads act."""
+    """This transition with seams of lines at the loads."""
     opens = tuple((touch.split(sections[touch.owner]), number, factor) for touch, number, factor in change.opens)
     return replace(change, state=change.state.split(sections), opens=opens)
 
 
 def _plane(arrangement: Arrangement, change: Transition, load_factor: float) -> tuple[FloatArray, float]:
-    """Plane in which the next arrangement is met, its normal and its level: at a load factor, or at an opening."""
+    """Normal and level of the plane in which the next arrangement is entered: by load factor, or by opening."""
     size = len(arrangement.scale)
     normal = np.zeros(size + 1)
     if not change.opens:
@@ -231,7 +232,7 @@ def _value(arrangement: Arrangement, point: ArcPoint, key: Key) -> float:
 
 
 def _beside(arrangement: Arrangement, point: ArcPoint, step: float) -> ArcPoint | None:
-    """The point a short way along the tangent, or against it."""
+    """The point after a short step along the tangent, or against it."""
     predicted = point.y + step * point.tangent
     corrected = arrangement.curve.correct(predicted, point.tangent)
     if corrected is None:
@@ -240,7 +241,7 @@ def _beside(arrangement: Arrangement, point: ArcPoint, step: float) -> ArcPoint 
 
 
 def _turned(arrangement: Arrangement, point: ArcPoint, grows: Key) -> ArcPoint | None:
-    """The point with its tangent on the side on which a margin grows."""
+    """The point with its tangent in the direction in which a margin grows."""
     ahead = _beside(arrangement, point, PROBE)
     behind = _beside(arrangement, point, -PROBE)
     if ahead is None or behind is None:
@@ -251,12 +252,12 @@ def _turned(arrangement: Arrangement, point: ArcPoint, grows: Key) -> ArcPoint |
 
 
 def _where_it_begins(arrangement: Arrangement, point: ArcPoint, grows: Key) -> ArcPoint | None:
-    """The point of an arrangement where a margin vanishes, near another; its tangent leads to where it grows."""
+    """The nearby point of an arrangement with a margin of zero; the margin grows along its tangent."""
     turned = _turned(arrangement, point, grows)
     if turned is None:
         return None
     value = _value(arrangement, turned, grows)
-    # A point beyond the beginning is followed back to it.
+    # From a point beyond the beginning the curve is followed back to it.
     back = value > 0.0
     if back:
         turned = replace(turned, tangent=-turned.tangent)
@@ -279,7 +280,7 @@ def _where_it_begins(arrangement: Arrangement, point: ArcPoint, grows: Key) -> A
 
 
 def _is_valid(arrangement: Arrangement, point: ArcPoint) -> bool:
-    """Whether no margin is below zero a little beyond the entry."""
+    """Whether no margin is below zero slightly beyond the entry."""
     beyond = _beside(arrangement, point, PROBE)
     if beyond is None:
         return False

@@ -1,4 +1,4 @@
-"""Equilibria along one input as data: points, events, stability, and what may be asked of a path."""
+"""Equilibria along one input as data: points, events, stability, and functions of a path."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from cosserat_casadi.result import Result
 
 
 class AlongPath(Protocol):
-    """An event, or anything else, that lies between two points of a path."""
+    """An event, or another object, between two points of a path."""
 
     @property
     def position(self) -> int:
@@ -45,10 +45,10 @@ class PathContact:
     Attributes:
         obstacle: name of the obstacle.
         owner: name of the rod, or of the body, that touches.
-        start: abscissa X at which it begins; 0 of a body.
+        start: abscissa X at which it begins; 0 for a body.
         end: abscissa at which it ends; ``start`` for a point.
         kind: "point" or "line".
-        ends: force at the point, or at both ends of a line, along the normals there, N; none at an event.
+        ends: force at the point, or at both ends of a line, along the normals there, N; empty at an event.
         of_body: whether it is a body that touches.
         inside: forces at sections inside a line.
     """
@@ -69,13 +69,13 @@ class PathEvent:
 
     Attributes:
         kind: "limit" or "bifurcation"; or "touch", "lift_off", "point_to_line", "line_to_point", "slide_to_tip" or
-            "slide_from_tip" of a contact.
-        factor: share of the input at which it lies.
-        x: unknowns there, shape (model.size,).
-        multiplicity: independent directions in which the equilibrium is neutral there.
+            "slide_from_tip" for a contact.
+        factor: share of the input at the event.
+        x: unknowns at the event, shape (model.size,).
+        multiplicity: number of independent neutral directions at the event.
         position: index of the first point of the path that lies beyond it.
-        arrangement: number of the arrangement of contacts that its unknowns belong to.
-        contact: the contact that changes, as it is there; None where none does.
+        arrangement: index of the arrangement of contacts of its unknowns.
+        contact: the contact that changes, at the event; None if none does.
     """
 
     kind: str
@@ -101,13 +101,13 @@ CONTACT_WORDS = {
 
 @dataclass(frozen=True)
 class InputChange(Generic[ModelType]):
-    """The way of one input of a model; of rods in exact contact also of several inputs, and of parameters.
+    """The change of one input of a model; for rods in exact contact also of several inputs, and of parameters.
 
     Attributes:
         model: the model.
-        name: the input that is followed, or the first of several.
-        base: stacked inputs at factor 0, shape (model.inputs.size,); where parameters move these stand behind.
-        change: values at factor 1 less ``base``, shaped as ``base``.
+        name: name of the followed input, or of the first one of several.
+        base: stacked inputs at factor 0, shape (model.inputs.size,), followed by parameters if these move.
+        change: values at factor 1 less ``base``, in the shape of ``base``.
     """
 
     model: ModelType
@@ -122,13 +122,13 @@ class InputChange(Generic[ModelType]):
 
 
 def loads_have_potential(way: InputChange[Model]) -> bool:
-    """Whether all loads have a potential along the way of an input."""
+    """Whether all loads have a potential along the change of an input."""
     count = way.model.inputs.size
     return all(way.model.has_potential(way.inputs(factor)[:count]) for factor in (0.0, 1.0))
 
 
 def path_along(way: InputChange[Any], kind: Callable[..., PathType], outcome: PathOutcome, **fields: Any) -> PathType:
-    """A path of a kind along the way of an input, by default with the sentence of its outcome."""
+    """A path of a kind along the change of an input, by default with the sentence of its outcome."""
     of_way = {"model": way.model, "name": way.name, "base": way.base, "change": way.change}
     return kind(**{**of_way, "outcome": outcome, "message": outcome.value, **fields})
 
@@ -140,11 +140,11 @@ class InputPath(Result, InputChange[ModelType], Generic[ModelType, EventType]):
     Attributes:
         outcome: how the path ended.
         message: a sentence for the user.
-        factor: share of the way at each of k points in the order of travel, shape (k,).
+        factor: share of the change at each of k points in the order of travel, shape (k,).
         x: unknowns, shape (k, model.size).
         events: limit points and bifurcations in the order of travel.
-        error_estimate: estimated error of where the events lie, relative, and of the poses and lengths of cables
-            there, at both ends and between, as of an equilibrium; None if not estimated.
+        error_estimate: estimated error of the factors of events, relative, and of poses and lengths of cables at
+            events, at both ends and between, as for an equilibrium; None if not estimated.
     """
 
     outcome: PathOutcome
@@ -156,7 +156,7 @@ class InputPath(Result, InputChange[ModelType], Generic[ModelType, EventType]):
 
     @property
     def converged(self) -> bool:
-        """Whether factor 1 was reached as asked."""
+        """Whether factor 1 was reached."""
         return self.outcome is PathOutcome.CONVERGED
 
     @property
@@ -166,16 +166,16 @@ class InputPath(Result, InputChange[ModelType], Generic[ModelType, EventType]):
 
     @property
     def stretches(self) -> list[range]:
-        """Indices of the points before the first event, between one event and the next, and beyond the last one."""
+        """Indices of the points before the first event, between successive events, and beyond the last one."""
         bounds = [0, *(event.position for event in self.events), len(self.factor)]
         return [range(first, behind) for first, behind in itertools.pairwise(bounds)]
 
     def between_events(self, finer: Self) -> Iterator[tuple[int, int, FloatArray | None]]:
-        """Find equilibria of a finer path with the same events at quarters of each stretch between events of this one.
+        """Equilibria of a finer path with equal events at quarters of each stretch between events of this path.
 
         Yields:
-            index of a point of this path that is not beside an event; index of a point near it on the finer path;
-            unknowns of the finer path at the factor of the first, None where Newton's method does not converge.
+            index of a point of this path away from events; index of a nearby point of the finer path; unknowns of the
+            finer path at the factor of the first point, None if Newton's method does not converge.
         """
         for stretch, finer_stretch in zip(self.stretches, finer.stretches, strict=True):
             quarters = np.linspace(stretch.start, stretch.stop - 1, 5)[1:-1].astype(int)
@@ -184,10 +184,10 @@ class InputPath(Result, InputChange[ModelType], Generic[ModelType, EventType]):
                     yield index, *finer._unknowns_at(float(self.factor[index]), finer_stretch)
 
     def _unknowns_at(self, factor: float, stretch: range) -> tuple[int, FloatArray | None]:
-        """Unknowns at a factor, sought from the chord of the two points of a stretch that it lies between.
+        """Unknowns at a factor, solved for from the chord between the neighbouring points of a stretch.
 
         Returns:
-            index of the second of these points; unknowns, None where Newton's method does not converge.
+            index of the second of these points; unknowns, None if Newton's method does not converge.
         """
         factors = self.factor[stretch.start : stretch.stop]
         lower = np.minimum(factors[:-1], factors[1:])
@@ -202,8 +202,8 @@ class InputPath(Result, InputChange[ModelType], Generic[ModelType, EventType]):
         return after, self._corrected(after, start, factor)
 
     def _corrected(self, index: int, start: FloatArray, factor: float) -> FloatArray | None:
-        """Unknowns that solve the equations of a point at another factor; None where Newton's method finds none."""
-        # Inputs of one point that other points do not share, such as a history of friction, stay.
+        """Unknowns that solve the equations of a point at another factor; None if Newton's method fails."""
+        # Inputs of this point alone, such as a history of friction, are kept.
         before = self.all_inputs[index] - self.factor[index] * self.change
         curve = Curve(input_path(self.model, start, before, before + self.change), DETERMINANT, ArcSettings())
         return curve.at(start, factor)
@@ -222,13 +222,13 @@ def path_events(traced: Trace, scale: FloatArray, begun: int = 0, arrangement: i
     Args:
         traced: the computed part of the curve.
         scale: units of the unknowns along the curve, shape (size,).
-        begun: points of the path before this part.
-        arrangement: number of the arrangement of contacts of this part.
+        begun: number of points of the path before this part.
+        arrangement: index of the arrangement of contacts of this part.
     """
     lengths = [point.length for point in traced.points]
     events = []
     for event in traced.events:
-        # An event that is a point of the path, where a branch leaves, lies before what follows it.
+        # An event that is a point of the path, at which a branch begins, lies before the points that follow.
         position = begun + int(np.searchsorted(lengths, event.point.length, side="right"))
         x = event.point.x * scale
         events.append(PathEvent(event.kind, event.point.load_factor, x, event.multiplicity, position, arrangement))
@@ -237,14 +237,14 @@ def path_events(traced: Trace, scale: FloatArray, begun: int = 0, arrangement: i
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class EquilibriumPath(InputPath[Model, PathEvent]):
-    """Equilibria of rods along one of their inputs, which grows from zero, or from where it is told to begin.
+    """Equilibria of rods along one of their inputs, which grows from zero, or from a given value.
 
     Attributes:
-        smallest_eigenvalue: of the second variation in units of EI/ℓ, as of a :class:`Solution`, shape (k,); None
-            where loads have no potential.
-        neutral: whether a variation costs no energy while none releases any, shape (k,); None where loads have no
+        smallest_eigenvalue: smallest eigenvalue of the second variation in units of EI/ℓ, see :class:`Solution`, shape
+            (k,); None if loads have no potential.
+        neutral: whether a variation costs no energy while none releases any, shape (k,); None if loads have no
             potential.
-        branch: index of the first point on the branch that was switched to; None on the first path.
+        branch: index of the first point on the other branch after a switch; None without a switch.
     """
 
     smallest_eigenvalue: FloatArray | None
@@ -253,16 +253,16 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
 
     @property
     def value(self) -> FloatArray:
-        """Value of the input at factor 1, shaped as the input."""
+        """Value of the input at factor 1, in the shape of the input."""
         return self.value_at(1.0)
 
     def value_at(self, factor: float) -> FloatArray:
-        """Value of the input at a factor, shaped as the input."""
+        """Value of the input at a factor, in the shape of the input."""
         return self.model.inputs.unpack(self.inputs(factor))[self.name]
 
     @property
     def stable(self) -> npt.NDArray[np.bool_] | None:
-        """Whether every variation of a point that is not neutral costs energy, shape (k,); None where meaningless."""
+        """Whether every variation that is not neutral costs energy at each point, shape (k,); None if not defined."""
         if self.smallest_eigenvalue is None or self.neutral is None:
             return None
         every_variation_costs = self.smallest_eigenvalue > 0.0
@@ -274,15 +274,15 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
         return evaluated(self.model.resolution_index, self.x, self.all_inputs)[0][:, 0, 0]
 
     def contacts(self, index: int) -> tuple[PathContact, ...]:
-        """The contacts at a point of the path; none in a scene without obstacles."""
+        """The contacts at a point of the path; empty in a scene without obstacles."""
         return ()
 
     def rubbing(self, index: int) -> tuple[RubbingStretch, ...]:
-        """The stretches that stick or slip at a point of the path; none in a scene without friction."""
+        """The stretches that stick or slip at a point of the path; empty in a scene without friction."""
         return ()
 
     def tip(self, rod: str | None = None) -> SolvedPoses:
-        """Poses of a rod's tip at the k points of the path; the name may be left out where there is one rod."""
+        """Poses of a rod's tip at the k points of the path; the name may be left out in a scene with one rod."""
         name = self.model.rod_name(rod)
         poses = [self._tip(name, *point) for point in self._points]
         return SolvedPoses(
@@ -296,17 +296,17 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
         return self._tip(self.model.rod_name(rod), event.x, event.factor, event.arrangement)
 
     def section(self, rod: str | None = None) -> float:
-        """Abscissa of the section whose way tells most of the path.
+        """Abscissa of the section whose displacement represents the path.
 
-        The tip of a free rod; of a rod held at its tip where the followed load acts, or its middle.
+        It is the tip of a free rod; for a rod held at its tip the section of the followed load, or the middle.
         """
         name = self.model.rod_name(rod)
         scene = self.model.scene
         if name not in scene.rods_held_at_tips:
             return 1.0
-        # The tip of a held rod does not move, so that its way tells nothing.
+        # The tip of a held rod does not move.
         load_name = next(entry.owner for entry, _ in self.model.inputs if entry.name == self.name)
-        # An input of a rod has no load.
+        # An input may belong to a rod and not to a load.
         load = next((load for load in scene.causes if load.name == load_name), None)
         if getattr(load, "rod", name) != name:
             return 0.5
@@ -322,10 +322,10 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
         return self._position(self.model.rod_name(rod), X, event.x, event.factor, event.arrangement)
 
     def solution(self, index: int) -> Solution:
-        """A point of the path as a solution, whose shape, strain and wrenches may be asked for.
+        """A point of the path as a solution, with shape, strain and wrenches.
 
-        It is unresolved as a solve would be: where the nodes are too few, or rods deeper in each other, or in smooth
-        obstacles, than their width.
+        It is UNRESOLVED, as after a solve, if the nodes are too few, or rods are deeper in each other, or in smooth
+        obstacles, than the width.
         """
         solution = self._solution(self.x[index], self.all_inputs[index])
         stable = self.stable
@@ -338,15 +338,15 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
         )
 
     def shape(self, index: int, x: FloatArray, factor: float) -> Solution:
-        """The equilibrium with unknowns of a point, or near them at another factor, without its stability."""
+        """The equilibrium, without stability, with unknowns of a point, or near them at another factor."""
         return self._solution(x, self.all_inputs[index] + (factor - self.factor[index]) * self.change)
 
     def event_shape(self, event: PathEvent) -> Solution:
-        """The equilibrium at an event, without its stability."""
+        """The equilibrium, without stability, at an event."""
         return self._solution(event.x, self.inputs(event.factor))
 
     def _solution(self, x: FloatArray, inputs: FloatArray) -> Solution:
-        """The equilibrium with some unknowns at some inputs."""
+        """The equilibrium with unknowns x at some inputs."""
         residual = column(self.model.residual(x, inputs))
         is_resolved = float(self.model.resolution_index(x, inputs)) <= 1.0
         outcome = Outcome.CONVERGED if is_resolved else Outcome.UNRESOLVED
@@ -363,7 +363,7 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
 
     @property
     def _points(self) -> Iterable[tuple[FloatArray, float, int]]:
-        """Unknowns, factor and number of the arrangement of contacts of each point."""
+        """Unknowns, factor and index of the arrangement of contacts of each point."""
         return zip(self.x, self.factor.tolist(), itertools.repeat(0))
 
     def _tip(self, rod: str, x: FloatArray, factor: float, arrangement: int) -> SolvedPoses:

@@ -1,4 +1,4 @@
-"""Equilibrium paths of a model: one input grows from zero, the equilibrium is followed through folds and branches.
+"""Equilibrium paths of a model: one input grows from zero, and the equilibrium is followed through folds and branches.
 
 See docs/theory.md, section 12.
 """
@@ -52,10 +52,10 @@ class _Followed(InputChange[Model]):
 
     @property
     def monitor(self) -> Monitor:
-        """Eigenvalues of the second variation where that has a meaning, else the determinant."""
+        """Eigenvalues of the second variation if there is a potential, else the determinant."""
         if not loads_have_potential(self):
             return DETERMINANT
-        # Eigenvalues see a double bifurcation too, where the determinant keeps its sign.
+        # Eigenvalues also show a double bifurcation, at which the determinant keeps its sign.
         allowed = variations(self.model)
 
         def eigenvalues(_y: FloatArray, jacobian: FloatArray, _bordered: FloatArray) -> FloatArray:
@@ -67,7 +67,7 @@ class _Followed(InputChange[Model]):
     def scale(self) -> FloatArray:
         """Units of the unknowns along the curve, shape (n,): multipliers grow with the load and count relative to it.
 
-        Otherwise a strong load on a held rod would make a long way of small steps.
+        Otherwise a strong load on a held rod would need many small steps.
         """
         model = self.model
         unloaded = np.zeros(model.size)
@@ -86,7 +86,7 @@ class _Followed(InputChange[Model]):
         unscaled = input_path(self.model, start, self.base, self.base + self.change)
 
         def jacobian(x: FloatArray, t: float) -> FloatArray:
-            # The chain rule: one column an unknown.
+            # Chain rule: one column for each unknown.
             unscaled_jacobian = dense(unscaled.jacobian(scale * x, t))
             return unscaled_jacobian * scale
 
@@ -103,10 +103,10 @@ class _Followed(InputChange[Model]):
 
         Args:
             traced: the computed part of the curve.
-            message: a sentence for the user; by default the outcome's.
+            message: a sentence for the user; by default the sentence of the outcome.
         """
         outcome = traced.outcome or PathOutcome.MAX_STEPS
-        # Without a point there are no rows, but columns all the same.
+        # Without points the array has no rows, but still its columns.
         y = np.array([point.y for point in traced.points]).reshape(-1, self.model.size + 1)
         load_factors = y[:, -1]
         smallest_eigenvalue = None
@@ -138,13 +138,13 @@ def follow_path(
     first: EquilibriumPath | None = None,
     progress: Progress | None = None,
 ) -> EquilibriumPath:
-    """Follow the equilibrium of a model while one input moves from zero to a value, as the public ``follow`` does.
+    """Follow the equilibrium of a model while one input moves from zero to a value; see the public ``follow``.
 
-    The path starts at the equilibrium with that input at zero, or where ``values`` says, and all other inputs at their
-    values, goes straight on through bifurcations, and ends where the factor first reaches 1.
+    The path starts at the equilibrium with that input at zero, or at its value in ``values``, and all other inputs at
+    their values. It passes straight through bifurcations, and ends when the factor first reaches 1.
 
     Raises:
-        SceneError: the input is unknown, a value is refused, a branch of a path with friction is asked for, or contact
+        SceneError: the input is unknown, a value is refused, a branch of a path with friction is requested, or contact
             alone would have to hold a free rod.
     """
     model = model.at()
@@ -179,7 +179,7 @@ def follow_path(
 
 
 def _smooth_guard(followed: _Followed) -> Guard | None:
-    """Refuses steps that take a rod through a smooth bar or ball; None in a scene that has none."""
+    """Guard that refuses steps through a smooth bar or ball; None in a scene without these."""
     barriers = SmoothBarriers(followed.model)
     if not barriers.any:
         return None
@@ -195,15 +195,15 @@ def _smooth_guard(followed: _Followed) -> Guard | None:
 
 
 def _resolved(path: EquilibriumPath) -> EquilibriumPath:
-    """The path; not resolved where one of its points is not: on too few nodes, or too deep in smooth contact.
+    """The path, UNRESOLVED if one of its points is not resolved: too few nodes, or too deep in smooth contact.
 
-    One that has not come to its end has its outcome, and tells the rest beside it: it may be why.
+    A path that has not reached its end keeps its outcome, with a note on the resolution, which may be the cause.
     """
     unresolved = np.flatnonzero(path.resolution_indices > 1.0)
     if not len(unresolved):
         return path
     told = f"From factor {path.factor[unresolved[0]]:.6g} on the modes and nodes are too few for the shape."
-    # Among exact contacts the unknowns change their number along the path.
+    # With exact contacts the number of unknowns changes along the path.
     if path.model.contact_depth is not None and not path.model.scene.touches_exactly:
         depths = depths_along(path.model, path.x, path.all_inputs)
         too_deep = np.flatnonzero(depths > 1.0)
@@ -218,7 +218,7 @@ def _resolved(path: EquilibriumPath) -> EquilibriumPath:
 
 
 def _within_limits(path: EquilibriumPath) -> EquilibriumPath:
-    """The path; told where strains are beyond their limits on the way, or where the path stops for that."""
+    """The path, with an outcome or note if strains exceed their limits along it."""
     if path.outcome not in (PathOutcome.CONVERGED, PathOutcome.LOAD_STALLED):
         return path
     beyond = first_beyond(path.model, path.x, path.all_inputs)
@@ -252,7 +252,7 @@ def _followed(
         base = model.pack(values)
     else:
         base = full.copy()
-        # The followed input grows from zero, whatever the scene gives it; all others keep their values.
+        # The followed input grows from zero, not from the scene's value; all others keep their values.
         base[model.inputs.slices[name]] = 0.0
     change = full - base
     return _Followed(model, name, base, change)

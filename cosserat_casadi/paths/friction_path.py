@@ -1,8 +1,7 @@
-"""Paths with friction: one input grows in increments, and a history of the rods goes along.
+"""Paths with friction: one input grows in increments, with a history of the rods.
 
-Friction at rest is known only from the way that led there. The path begins at the equilibrium without friction. In each
-increment the history is as at the point before, so that it ends at an equilibrium of known loads; there it is brought
-up to date. Between two points friction goes from the one state to the other: implicit Euler of Coulomb's law.
+Friction at rest depends on the path. The path begins at the equilibrium without friction. Each increment uses the
+history of the point before, ends at an equilibrium, and then updates the history: implicit Euler for Coulomb's law.
 """
 
 from __future__ import annotations
@@ -34,17 +33,17 @@ SHORTEST = 1e-6
 """Share of the input below which an increment counts as stalled."""
 
 WITHIN = 0.9
-"""Share of the longest change of the shape that an increment goes for, as the last one foretells it."""
+"""Share of the longest change of the shape at which an increment aims, by extrapolation of the last one."""
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class FrictionPath(EquilibriumPath):
-    """Equilibria of rods that rub on obstacles, or on each other.
+    """Equilibria of rods with friction on obstacles, or on each other.
 
     Attributes:
-        histories: inputs ``history`` of the model at each point, shape (k, h), from which friction is counted.
-        slips: how far nodes, and sections of rods that rub on rods, are dragged over the way at which they slip, load
-            after load, pair after pair, shape (k, nodes and sections); −1 where nothing presses.
+        histories: inputs ``history`` of the model at each point, shape (k, h), on which friction depends.
+        slips: drag over the drag at which a section slips, for nodes load after load, then for sections pair after
+            pair, shape (k, nodes and sections); −1 for sections that are not pressed.
     """
 
     histories: FloatArray
@@ -70,7 +69,7 @@ class _Point:
         factor: share of the input.
         solution: equilibrium.
         history: for the next increment, shape (h,).
-        slips: at the nodes and sections.
+        slips: slips of the nodes and sections.
     """
 
     factor: float
@@ -80,17 +79,17 @@ class _Point:
 
 
 def _equilibrium(model: Model, inputs: FloatArray, before: list[Solution], longest: float) -> Solution | None:
-    """Equilibrium next to the last point of a path; None where none is found.
+    """Equilibrium next to the last point of a path; None if none is found.
 
-    Newton's method begins where the last increment leads to, for sections that slip go on as they did, then at the last
-    point, whose sections are at the brink. Where many sections go from sticking to slipping it may find neither: the
-    inputs are then moved in parts.
+    Newton's method begins at the extrapolated last increment, since sections that slip continue so, then at the last
+    point, whose slipping sections are at the limit. If many sections change from sticking to slipping both may fail:
+    the inputs are then moved in parts.
 
     Args:
-        model: with memory.
+        model: model with memory.
         inputs: stacked inputs with the history of the last point.
         before: the last two points, or the first one.
-        longest: most that shapes and poses may change by, in the 2-norm of their unknowns; forces may jump.
+        longest: largest change of shapes and poses, in the 2-norm of their unknowns; forces may jump.
     """
     last = before[-1]
     barriers = SmoothBarriers(model)
@@ -103,7 +102,7 @@ def _equilibrium(model: Model, inputs: FloatArray, before: list[Solution], longe
             found = judge(model, inputs, end.x, end.outcome, end.iterations, 1.0, QUICK.tolerance)
             break
     if found is None:
-        # A new history leaves the forces as they are: the last point is in balance with it.
+        # A new history does not change the forces: the last point is in balance with it.
         settled = np.where(model.inputs.of_memory, inputs, last.inputs)
         found = solve(model, inputs, start=replace(last, inputs=settled), estimate_error=False)
     near = np.linalg.norm((found.x - last.x)[places]) <= longest
@@ -112,7 +111,7 @@ def _equilibrium(model: Model, inputs: FloatArray, before: list[Solution], longe
 
 
 def _foretold(points: list[_Point], longest: float) -> float:
-    """Increment of the factor in which a shape that goes on changing as it did last changes by the longest way."""
+    """Increment of the factor in which the shape, at its last rate of change, changes by the longest step."""
     if len(points) < 2:
         return inf
     before, last = points[-2:]
@@ -128,13 +127,13 @@ def follow_friction_path(
     first: EquilibriumPath | None = None,
     progress: Progress | None = None,
 ) -> FrictionPath:
-    """Follow the equilibrium of rods that rub while one input grows to its value.
+    """Follow the equilibrium of rods with friction while one input grows to its value.
 
     Args:
-        moved: the way of the input of a model with memory, without history.
-        first: a path from whose end this one goes on; by default nothing rubs at factor 0.
-        settings: limits; only limits of the load factor and of the length of a step are used.
-        progress: receives the factor reached.
+        moved: the change of an input of a model with memory, without history.
+        first: a path that this one continues; by default there is no friction at factor 0.
+        settings: settings, of which only the limits of the load factor and of a step are used.
+        progress: receives the reached factor.
     """
     model = moved.model
     memory = model.inputs.memory

@@ -21,11 +21,11 @@ class GapsAlong:
         rod: name of the rod.
         obstacle: the obstacle.
         ends: abscissae of the ends of its elements, shape (E + 1,).
-        positions: of the nodes of each element, shape (E, N + 1, 3), m.
-        tangents: their derivatives with X, shape (E, N + 1, 3), m.
-        bends: second derivatives, but for what lies along the tangent, shape (E, N + 1, 3), m.
-        radii: of the sections at base and tip, between which the radius is linear, shape (2,), m.
-        length: of the rod, m.
+        positions: positions of the nodes of each element, shape (E, N + 1, 3), m.
+        tangents: their derivatives by X, shape (E, N + 1, 3), m.
+        bends: second derivatives without parts along the tangent, shape (E, N + 1, 3), m.
+        radii: radii at base and tip, between which the radius is linear, shape (2,), m.
+        length: length of the rod, m.
     """
 
     rod: str
@@ -43,7 +43,7 @@ class GapsAlong:
         return count - 1
 
     def abscissae(self, local: FloatArray) -> FloatArray:
-        """Abscissae of points of every element, given in [0, 1] along it, shape (E, k)."""
+        """Abscissae of points of every element, given by coordinates in [0, 1] along it, shape (E, k)."""
         return np.asarray(self.ends[:-1, None] + np.diff(self.ends)[:, None] * local)
 
     def values(self, local: FloatArray) -> FloatArray:
@@ -61,14 +61,14 @@ class GapsAlong:
         return np.asarray((distances(self.obstacle, positions) - self._radius(X)) / self.length)
 
     def _located(self, X: FloatArray) -> tuple[npt.NDArray[np.int64], FloatArray]:
-        """The element of each abscissa, and the place in it, in [0, 1]; an end is of the element that it ends."""
+        """Element of each abscissa, and coordinate in it, in [0, 1]; a break belongs to the element that it ends."""
         elements = np.searchsorted(self.ends[1:-1], X, side="left").astype(np.int64)
         widths = np.diff(self.ends)[elements]
-        # The ends of elements are places of contact: a place that was computed lies on one to the last digit.
+        # The ends of elements are places of contact: a computed place equals one to the last digit.
         return elements, np.clip((X - self.ends[elements]) / widths, 0.0, 1.0)
 
     def at(self, X: float) -> tuple[float, float, float]:
-        """Distance and its first and second derivative with X, at an end of an element those from the base's side."""
+        """Distance and its first and second derivative by X; at an element end from the side of the base."""
         elements, local = self._located(np.array([X]))
         element = elements[0]
         weights = chebyshev.interpolation_matrix(self._intervals, local)[0]

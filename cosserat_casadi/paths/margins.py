@@ -1,7 +1,7 @@
-"""Margins of an arrangement of contacts: numbers that are positive while it is valid, each with its contact or pair.
+"""Margins of an arrangement of contacts: numbers, each of a contact or a pair, that are positive while it is valid.
 
-Signorini's conditions between two changes of the arrangement: no section is inside an obstacle, no contact pulls, and
-what touches at a point stays a point between base and tip.
+They are Signorini's conditions between two changes of the arrangement: no section is inside an obstacle, no contact
+pulls, and a contact at a point stays a point between base and tip.
 """
 
 from __future__ import annotations
@@ -22,22 +22,22 @@ OPEN = 0.005
 """Least width of a line of contact, and least distance of a moving place from the tip, along a path."""
 
 OVER_JOINT = 2e-4
-"""Least distance of the place of a point from the joint of two rods, one of which goes on where the other ends."""
+"""Least distance of a point of contact from the joint of two rods, one of which continues the other."""
 
 NEAR = 0.01
-"""Distance along the rod from a contact within which its own margins watch the gap."""
+"""Distance along the rod from a contact within which the contact's own margins cover the gap."""
 
 PER_ELEMENT = 48
-"""Intervals between the abscissae of an element at which gaps are looked at."""
+"""Number of intervals between abscissae of an element at which gaps are evaluated."""
 
 NARROWINGS = 3
-"""Times that the section which is nearest to an obstacle is looked for more closely."""
+"""Rounds of refinement in the search for the section that is nearest to an obstacle."""
 
 POLISHING = 4
-"""Newton steps to the section which is nearest to an obstacle."""
+"""Newton steps to the section that is nearest to an obstacle."""
 
 ROUNDING = 1e-9
-"""Difference of distances, over the length, that is put down to rounding."""
+"""Difference of distances, over the length, that may be rounding."""
 
 
 class Watch(Enum):
@@ -60,9 +60,9 @@ class Key:
 
     Attributes:
         watch: quantity of the margin.
-        number: of the contact in the arrangement; −1 for a gap.
-        end: number of the section of a line whose force it is, base to tip.
-        pair: rod, or body, and obstacle.
+        number: index of the contact in the arrangement; −1 for a gap.
+        end: index, base to tip, of the section of a line whose force it is.
+        pair: names of rod, or body, and obstacle.
     """
 
     watch: Watch
@@ -76,8 +76,8 @@ class Margin:
     """A margin at a point of a path.
 
     Attributes:
-        value: without unit, positive where the arrangement is valid.
-        X: abscissa that it belongs to.
+        value: dimensionless value, positive in a valid arrangement.
+        X: abscissa of the margin.
     """
 
     value: float
@@ -94,7 +94,7 @@ def margins(arrangement: Arrangement, z: FloatArray, load_factor: float) -> dict
         largest = max(largest, float(np.abs(ends).max()), float(np.abs(line).max(initial=0.0)))
     for number, (touch, ends, line) in enumerate(parts):
         pair = (touch.owner, touch.obstacle)
-        # What errors of the moment make of the forces of a short line is as large as it is short.
+        # Errors of the moment cause errors of the forces in inverse proportion to the length of a line.
         lever = touch.end - touch.start if touch.is_line else 1.0
         for end, (force, X) in enumerate(zip(ends, touch.carriers, strict=True)):
             found[Key(Watch.FORCE, number, pair, end)] = Margin(float(force) * lever / largest, float(X))
@@ -113,7 +113,7 @@ def margins(arrangement: Arrangement, z: FloatArray, load_factor: float) -> dict
             found[Key(Watch.PRESSURE, number, pair)] = Margin(pressing, float(abscissae[weakest]))
             found[Key(Watch.WIDTH, number, pair)] = Margin(width - OPEN, float(touch.start))
         elif touch.of_body:
-            # It has no place along a rod that could change.
+            # A body has no place of contact along a rod.
             continue
         elif touch.moving:
             _, _, curvature = gaps[pair].at(touch.start)
@@ -139,13 +139,13 @@ def margins(arrangement: Arrangement, z: FloatArray, load_factor: float) -> dict
 
 
 def nearest(gaps: GapsAlong, taken: list[tuple[float, float]]) -> float | None:
-    """Abscissa of the section that is nearest to an obstacle, out of reach of stretches that touch it already."""
+    """Abscissa of the section that is nearest to an obstacle, away from stretches that already touch it."""
     local = np.linspace(0.0, 1.0, PER_ELEMENT + 1)
     X = gaps.abscissae(local)
     free = np.ones(X.shape, dtype=bool)
     for start, end in taken:
         free &= (start - NEAR > X) | (end + NEAR < X)
-    # The clamp touches what it is fixed to.
+    # The clamp may touch the obstacle to which it is fixed.
     free[0, 0] = False
     if not free.any():
         return None
@@ -154,7 +154,7 @@ def nearest(gaps: GapsAlong, taken: list[tuple[float, float]]) -> float | None:
     start = float(X[element, index])
     spacing = float(gaps.ends[element + 1] - gaps.ends[element]) / PER_ELEMENT
     polished = _polished(gaps, start, spacing)
-    # A tip comes down on itself, not on a section beside it.
+    # A tip touches itself first, not a section beside it.
     tip_is_nearest = values[-1, -1] <= values[element, index] + ROUNDING
     if polished > TIP - AT_TIP and tip_is_nearest:
         return TIP
@@ -164,10 +164,10 @@ def nearest(gaps: GapsAlong, taken: list[tuple[float, float]]) -> float | None:
 
 
 def _polished(gaps: GapsAlong, start: float, spacing: float) -> float:
-    """Where the gap is least near an abscissa, which is nearer to it than a spacing."""
+    """Abscissa of the least gap near an abscissa, within a spacing."""
     X = start
     reach = spacing
-    # Beside a thin obstacle the gap has a corner, almost: Newton's method needs to start close to it.
+    # Beside a thin obstacle the gap nearly has a corner: Newton's method must start close to it.
     for _ in range(NARROWINGS):
         around = np.clip(X + reach * np.linspace(-1.0, 1.0, 9), 0.0, TIP)
         X = float(around[gaps.distances(around).argmin()])

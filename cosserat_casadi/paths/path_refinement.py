@@ -1,4 +1,4 @@
-"""A path on a discretisation that is fine enough: refined until the events and the shapes stay where they are.
+"""A path on a sufficiently fine discretisation: refined until events and shapes do not change any more.
 
 See docs/theory.md, section 12, "Modes".
 """
@@ -33,10 +33,10 @@ MODES = (6, 9, 12, 16, 21, 28, 36)
 """Modes per strain component and element, one refinement level after the other."""
 
 SPARE = 2
-"""Intervals beyond the number that the modes of an unbent rod need."""
+"""Intervals beyond the number for the modes of an unbent rod."""
 
 SAMPLES = 12
-"""Points of a path whose turn says how many intervals the next refinement level needs."""
+"""Number of points of a path whose turns determine the intervals of the next refinement level."""
 
 SMALLEST_FACTOR = 1e-12
 """Factor of an event below which differences count absolutely."""
@@ -94,23 +94,24 @@ def follow(
     """Follow the equilibria of a scene, or of a model, while one input moves.
 
     A model keeps its modes and nodes, or its steps. A scene is followed on modes and nodes, or steps, that meet its
-    tolerance. Where the scene fixes modes or nodes they are used as they are, and no error is estimated. Else the path
-    is followed with more and more modes until the factors of its events, relative, and the poses and lengths of cables
-    there, at both ends and between change by less than the tolerance; the last change is ``error_estimate``.
+    tolerance. Modes or nodes that the scene fixes are used, and no error is estimated. Otherwise the path is followed
+    with more and more modes until the factors of its events, relative, and poses and lengths of cables at events, at
+    both ends and between change by less than the tolerance; the last change is ``error_estimate``.
 
-    An input begins at its value in ``values``; without one, of rods at zero, of concentric tubes at the scene's value.
+    An input begins at its value in ``values``, or by default at zero for rods, at the scene's value for concentric
+    tubes.
 
     Args:
         subject: a validated scene, or a model of it: of rods, or of concentric tubes.
-        name: an input; of concentric tubes one that is one number, such as "inner.rotation" or "push.force.z".
+        name: an input; for concentric tubes a scalar, such as "inner.rotation" or "push.force.z".
         value: its value at factor 1.
-        values: inputs where the path begins, by name; other inputs that are left out keep the scene's values.
+        values: inputs at the beginning of the path, by name; other inputs keep the scene's values.
         options: named as follows.
-        branch: of rods: number of the bifurcation, counted from 1, to leave at along the branch that crosses there;
-            negative for the other half of that branch, 0 goes straight on.
+        branch: for rods: number of the bifurcation, counted from 1, at which to leave along the crossing branch;
+            negative for the other half of that branch, 0 to go straight on.
         settings: limits.
-        first: an equilibrium of the same tubes to begin at, such as one of another path; of a model of rods that rub a
-            path from whose end this one goes on, with what friction remembers there.
+        first: for tubes, an equilibrium to begin at, such as one of another path; for rods with friction, a path that
+            this one continues, with the history of friction at its end.
         progress: receives the largest factor reached.
         report: receives the discretisation of rods, in words.
 
@@ -143,7 +144,7 @@ def _follow_refined(
     progress: Progress | None = None,
     report: Report | None = None,
 ) -> EquilibriumPath:
-    """Follow a path of rods on modes and nodes that meet the tolerance of their scene, as :func:`follow`."""
+    """Follow a path of rods on modes and nodes that meet the tolerance of their scene; see :func:`follow`."""
 
     def followed(model: Model, level: int = 0) -> EquilibriumPath:
         if report is not None:
@@ -152,7 +153,8 @@ def _follow_refined(
             report(f"{model.size} unknowns, {intervals} intervals")
         limits = settings or ArcSettings()
         if model.rubs_on_paths:
-            # Friction goes from point to point: their distance is refined with the modes, so that its error shows too.
+            # Friction is integrated from point to point: their distance is refined with the modes, so that its error
+            # shows too.
             limits = replace(limits, load_factor_change=limits.load_factor_change / 2**level)
         return follow_path(model, name, value, values, branch=branch, settings=limits, progress=progress)
 
@@ -160,7 +162,7 @@ def _follow_refined(
     accuracy = scene.accuracy
     fixed = accuracy.modes is not None or accuracy.nodes is not None
     if fixed:
-        # There is nothing to refine, and so nothing to estimate an error by.
+        # Without a refinement there is no error estimate.
         return followed(build(scene))
     coarse: EquilibriumPath | None = None
     for level, modes in enumerate(seeing_modes(scene, MODES)):
@@ -169,7 +171,7 @@ def _follow_refined(
             turn = _largest_turn(coarse)
         # Chebyshev interpolation resolves 2 rad in an interval.
         nodes = nodes_for(modes) + SPARE + ceil(turn / 2)
-        # The rotation of highest order: what changes from level to level is the modes' error alone.
+        # With the rotation of highest order only the error by modes changes from level to level.
         discretisation = discretise(scene, modes, nodes, "magnus8")
         fine = followed(build(scene, discretisation), level)
         if coarse is not None:
@@ -185,10 +187,10 @@ def _follow_refined(
 
 
 def path_distance(coarse: EquilibriumPath, fine: EquilibriumPath) -> float:
-    """Largest difference of two paths of a scene: of the factors of events, relative, and of what the tolerance bounds.
+    """Largest difference of two paths of a scene: of event factors, relative, and of watched poses and lengths.
 
-    Poses and lengths of cables are compared at the first point, at the events and at factor 1. Infinite where they end
-    otherwise or have other events.
+    Poses and lengths of cables are compared at the first point, at the events and at factor 1. It is infinite if the
+    paths end differently or have other events.
     """
     coarse_kinds = [event.kind for event in coarse.events]
     fine_kinds = [event.kind for event in fine.events]
@@ -204,10 +206,10 @@ def path_distance(coarse: EquilibriumPath, fine: EquilibriumPath) -> float:
 
 
 def _distance_between_events(coarse: EquilibriumPath, fine: EquilibriumPath) -> float:
-    """Largest such difference at some points between events; infinite where the finer path has no equilibrium near one.
+    """Largest such difference at points between events; infinite if the finer path has no nearby equilibrium.
 
-    A path may bend rods on its way more than at its ends: a heavy rod that is turned from hanging to standing is
-    straight at both.
+    A path may bend rods more between its ends than there: a heavy rod that is turned from hanging to standing is
+    straight at both ends.
     """
     differences = [0.0]
     for index, near, x in coarse.between_events(fine):
@@ -227,7 +229,7 @@ def _compared(path: EquilibriumPath) -> list[Solution]:
     """Equilibria at which paths are compared: the first point, the events, and the point at factor 1 if any."""
     if not len(path.factor):
         return []
-    # A path that ends short of factor 1 has no end to compare.
+    # A path that does not reach factor 1 has no end to compare.
     ends = (0, -1) if path.converged else (0,)
     solutions = [path.shape(index, path.x[index], float(path.factor[index])) for index in ends]
     return solutions + [path.event_shape(event) for event in path.events]

@@ -1,7 +1,7 @@
-"""Equilibria of concentric tubes while one input moves, through folds and back, and where the robot snaps to.
+"""Equilibria of concentric tubes while one input moves, through folds and back, and the ends of snaps.
 
-Where the path turns the robot loses its hold: an input that moves on makes it snap. It comes to rest at the next stable
-equilibrium that the path has at the same inputs, which lies beyond the next fold. See docs/tubes.md.
+At a fold of the path the robot loses its hold: an input that moves on makes it snap. It comes to rest at the next
+stable equilibrium of the path at the same inputs, beyond the next fold. See docs/tubes.md.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ from cosserat_casadi.tubes.tube_solution import TubeSolution, tip_error
 from cosserat_casadi.tubes.tube_solve import doubled, model_of, solution_at, solution_near, solve_at, solve_tubes
 
 TURNING = ArcSettings(longest=0.1, load_factor_change=0.05)
-"""Limits of a path over a rotation or a load; angles at the tips count in rad, the input as the share of its way."""
+"""Limits of a path over a rotation or a load; angles at the tips count in rad, the input as a share of its change."""
 
 SLIDING = ArcSettings(longest=0.05, load_factor_change=0.02, min_cosine=0.0, max_distance=5.0)
 """Limits of a path over a translation.
 
-It has a corner where the order of the tubes' ends changes: short steps, which may go round it.
+Such a path has corners where the order of the tubes' ends changes: short steps can pass these.
 """
 
 WORDS = {
@@ -42,20 +42,20 @@ WORDS = {
     PathOutcome.TURNED_BACK: "The path led back: the input would have to move the other way.",
     PathOutcome.UNRESOLVED: "The path was followed, but its error is above the tolerance: allow a larger one.",
 }
-"""Sentences of paths of tubes, for outcomes whose general sentence does not fit."""
+"""Sentences for outcomes of paths of tubes that the general sentences do not fit."""
 
 
 @dataclass(frozen=True)
 class TubeEvent:
-    """A place of a path at which the robot snaps, or where branches meet.
+    """A point of a path at which the robot snaps, or branches meet.
 
     Attributes:
         kind: "limit" or "bifurcation".
-        value: of the input there.
-        solution: the equilibrium there, which is neutral.
+        value: value of the input at the event.
+        solution: the neutral equilibrium at the event.
         position: index of the first point of the path that lies beyond it.
-        snaps_to: the stable equilibrium at the same inputs that the robot snaps to; None where it does not lose its
-            hold here, or the path has none farther on.
+        snaps_to: the stable equilibrium at the same inputs to which the robot snaps; None if it does not snap here, or
+            the path does not reach one.
     """
 
     kind: str
@@ -66,7 +66,7 @@ class TubeEvent:
 
     @property
     def released_energy(self) -> float | None:
-        """Energy that the snap sets free, J."""
+        """Energy that the snap releases, J."""
         if self.snaps_to is None:
             return None
         return self.solution.energy - self.snaps_to.energy
@@ -74,10 +74,9 @@ class TubeEvent:
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class TubePath(InputPath[TubeFunctions, TubeEvent]):
-    """Equilibria of concentric tubes along one input, from the value that it has to another.
+    """Equilibria of concentric tubes along one input, from one value to another.
 
-    The error estimate covers the input's values at events, relative to its way, and the tips, at points between events
-    too.
+    The error estimate covers the input's values at events, relative to its change, and the tips, between events too.
     """
 
     @property
@@ -98,23 +97,23 @@ class TubePath(InputPath[TubeFunctions, TubeEvent]):
     @cached_property
     def solutions(self) -> tuple[TubeSolution, ...]:
         """The equilibria at the points of the path."""
-        # The path is corrected at each of its points.
+        # Every point of the path is already corrected.
         return tuple(solution_at(self.model, *point, found=True) for point in zip(self.all_inputs, self.x, strict=True))
 
     @property
     def stable(self) -> npt.NDArray[np.bool_] | None:
-        """Whether each point is stable, shape (k,); None where the loads have no energy."""
+        """Whether each point is stable, shape (k,); None if the loads have no potential."""
         if not self.robot.has_energy:
             return None
         return np.array([solution.stable for solution in self.solutions], dtype=np.bool_)
 
     @property
     def energy(self) -> FloatArray:
-        """Energy at each point, shape (k,), J, as :attr:`TubeSolution.energy`."""
+        """Energy at each point, shape (k,), J, see :attr:`TubeSolution.energy`."""
         return np.array([solution.energy for solution in self.solutions])
 
     def tip(self, tube: str | None = None) -> SolvedPoses:
-        """Poses of a tube's tip at the k points of the path; as :meth:`TubeSolution.tip`."""
+        """Poses of a tube's tip at the k points of the path; see :meth:`TubeSolution.tip`."""
         tips = [solution.tip(tube) for solution in self.solutions]
         quaternions = np.array([tip.quaternion for tip in tips]).reshape(-1, 4)
         return SolvedPoses(np.array([tip.position for tip in tips]).reshape(-1, 3), rotations(quaternions), quaternions)
@@ -140,9 +139,9 @@ def follow_tubes(
     settings: ArcSettings | None = None,
     progress: Progress | None = None,
 ) -> TubePath:
-    """Follow the equilibrium of concentric tubes while one input moves to a value, as the public ``follow`` does.
+    """Follow the equilibrium of concentric tubes while one input moves to a value; see the public ``follow``.
 
-    Limits are by default the limits for a rotation and a load, or for a translation.
+    The default limits are those for a rotation and a load, or for a translation.
 
     Raises:
         SceneError: the scene has no tubes, an input is unknown or out of its range, or does not move; the equilibrium
@@ -167,7 +166,7 @@ def follow_tubes(
 
     if isinstance(subject, TubeFunctions):
         return followed(subject.steps)
-    # What a solve ends with has been found to be enough by half of its steps.
+    # The steps of a solve are known to suffice by comparison with half as many.
     steps = max(solve_tubes(scene, start).model.steps, solve_tubes(scene, end).model.steps) // 2
     path, error = doubled(
         followed,
@@ -183,7 +182,7 @@ def follow_tubes(
 
 
 def _check_first(robot: Robot, first: TubeSolution, values: Values) -> None:
-    """Refuse an equilibrium that a path of a robot cannot begin at.
+    """Refuse an equilibrium at which a path of a robot cannot begin.
 
     Raises:
         SceneError: it is of another robot, or the path would begin at other inputs too.
@@ -196,7 +195,7 @@ def _check_first(robot: Robot, first: TubeSolution, values: Values) -> None:
 
 
 def _difference(rough: TubePath, fine: TubePath) -> float | None:
-    """Largest error of events, of the end and of points between them beside a finer path; None where they differ."""
+    """Largest difference of events, ends and points between from a finer path; None if the events differ."""
     kinds = [[event.kind for event in path.events] for path in (rough, fine)]
     if not (rough.converged and fine.converged) or kinds[0] != kinds[1]:
         return None
@@ -204,7 +203,7 @@ def _difference(rough: TubePath, fine: TubePath) -> float | None:
     way = abs(fine.values[-1] - fine.values[0])
     for event, exact in zip(rough.events, fine.events, strict=True):
         errors += [abs(event.value - exact.value) / way, tip_error(event.solution, exact.solution)]
-    # Tubes that are turned once round are as little twisted at the end as where they began, and more so between.
+    # Tubes that are turned by a full turn are as little twisted at the end as at the beginning, but more between.
     for index, _, x in rough.between_events(fine):
         if x is None:
             return None
@@ -226,12 +225,12 @@ def _followed(
 
     Args:
         model: the robot.
-        name: of the input.
+        name: name of the input.
         start: inputs at factor 0.
         end: inputs at factor 1.
         at_start: an equilibrium to begin at; None for the equilibrium of a solve.
         limits: limits of the path; None for the limits of the kind of the input.
-        progress: receives the largest share of the way.
+        progress: receives the largest reached share of the change.
     """
     first = solve_at(model, start) if at_start is None else solution_near(model, start, at_start.x)
     path = path_along(
@@ -256,7 +255,7 @@ def _followed(
 
 
 def _event(path: TubePath, event: PathEvent) -> TubeEvent:
-    """An event of the path with its equilibrium, and where the robot snaps to."""
+    """An event of the path with its equilibrium and the end of the snap."""
     inputs = path.inputs(event.factor)
     at_event = solution_at(path.model, inputs, event.x, found=True)
     snaps_to = None
@@ -266,7 +265,7 @@ def _event(path: TubePath, event: PathEvent) -> TubeEvent:
 
 
 def _next_stable(path: TubePath, inputs: FloatArray, event: PathEvent) -> TubeSolution | None:
-    """The first stable equilibrium that a path comes to at the inputs of an event, beyond it."""
+    """The first stable equilibrium of a path after an event at the inputs of the event."""
     beyond = path.factor[event.position :] - event.factor
     solutions = path.solutions[event.position :]
     for index in range(1, len(beyond)):

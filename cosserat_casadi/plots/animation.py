@@ -1,4 +1,4 @@
-"""The animation of a motion, or of a mode: rods, bodies and the paths of tips in axes that hold the whole motion.
+"""Animations of motions and modes: rods, bodies and the paths of tips, in axes with limits of the whole motion.
 
 matplotlib is an extra and is imported inside functions only.
 """
@@ -35,10 +35,10 @@ FORMATS = (".gif", ".mp4")
 """Suffixes that an animation may have."""
 
 FRAME_RATE = 25
-"""Frames a second; a GIF counts the time between two in hundredths of a second, so that 30 would run too fast."""
+"""Frames per second. A GIF gives frame times in hundredths of a second: a rate of 30 would play too fast."""
 
 MOST_FRAMES = 500
-"""Frames of an animation, all of which are held in memory; of a longer one they are further apart."""
+"""Largest number of frames, all held in memory; a longer animation has a longer time between frames."""
 
 SIZE = (9.6, 5.4)
 """Width and height of the picture, inches."""
@@ -47,7 +47,7 @@ DPI = {".gif": 80, ".mp4": 200}
 """Dots per inch: 1920 × 1080 dots in MP4, 768 × 432 in GIF, whose frames are not compressed against each other."""
 
 SMOOTH = 300
-"""Least number of lines that the path of a tip is made of."""
+"""Least number of line segments of the path of a tip."""
 
 MARGIN = 0.08
 """Free room around the motion, relative to its extent."""
@@ -62,21 +62,21 @@ AXIS_LENGTH = 0.25
 """Length of a section's axis that is drawn, over the extent of the motion."""
 
 TITLE_LETTERS = 100
-"""Letters of a title in one line."""
+"""Largest number of letters in one line of a title."""
 
 TICKS = 5
 """Most intervals between the ticks of an axis."""
 
 
 class AnimationFailedError(CosseratError):
-    """The program that writes MP4 has failed."""
+    """Ffmpeg, which writes MP4, has failed."""
 
     def __init__(self, exit_code: int) -> None:
         super().__init__(f"ffmpeg could not write the animation and ended with exit code {exit_code}: write .gif")
 
 
 class AnimationUnavailableError(CosseratError):
-    """The program that writes MP4 is not there."""
+    """Ffmpeg, which writes MP4, is not installed."""
 
     def __init__(self) -> None:
         super().__init__(
@@ -89,9 +89,9 @@ def check_animation_path(path: str | Path, where: str = "path", others: tuple[st
     """Refuse an animation that cannot be made, before any work is done for it.
 
     Args:
-        path: the file.
-        where: what a refusal calls it.
-        others: suffixes of meshes, where the user may ask for them instead: a refusal names them too.
+        path: path of the file.
+        where: name of the option or argument, for the message.
+        others: further accepted suffixes, of meshes, for the message.
 
     Raises:
         SceneError: the suffix is none of FORMATS.
@@ -113,11 +113,11 @@ def frame_times(motion: Motion, speed: float = 1.0) -> FloatArray:
     """Times of the frames of an animation, evenly spaced over the motion, both ends among them.
 
     Args:
-        motion: at least one time of it was computed.
-        speed: 1 shows the motion as fast as it is, 0.1 ten times slower.
+        motion: motion with at least one computed time.
+        speed: playing speed over real time: 1 is real time, 0.1 is ten times slower.
 
     Returns:
-        shape (frames,), s; at most FRAME_RATE a second, and at most MOST_FRAMES.
+        times, shape (frames,), s; at most FRAME_RATE per second, and at most MOST_FRAMES.
     """
     first = motion.times[0]
     last = motion.times[-1]
@@ -129,19 +129,19 @@ def frame_times(motion: Motion, speed: float = 1.0) -> FloatArray:
 def animate_motion(
     motion: Motion, file: str | Path, *, speed: float = 1.0, progress: Callable[[float], None] | None = None
 ) -> None:
-    """Draw the animation of a motion into a file, whole or not at all.
+    """Draw the animation of a motion into a file. The file is written atomically.
 
     Args:
-        motion: what to show.
-        file: its suffix is one of FORMATS, or of MESHES.
-        speed: 1 shows the motion as fast as it is, 0.1 ten times slower.
-        progress: receives the share of the frames that are drawn; not of meshes.
+        motion: the motion.
+        file: path with a suffix of FORMATS or MESHES.
+        speed: playing speed over real time: 1 is real time, 0.1 is ten times slower.
+        progress: called with the share of drawn frames, 0 to 1; not for meshes.
 
     Raises:
         SceneError: the suffix is none of these, the speed is not positive, or the motion has no state.
         AnimationUnavailableError: it is MP4, and ffmpeg is not installed.
-        AnimationFailedError: ffmpeg gives up, as where it was built without H.264.
-        WriteError: the file cannot be written, as on a full disk.
+        AnimationFailedError: ffmpeg fails, e.g. a build without H.264.
+        WriteError: the file cannot be written, e.g. on a full disk.
     """
     if not speed > 0.0:
         raise SceneError(Problem("speed", f"must be > 0, got {speed:g}", "0.1 shows the motion ten times slower"))
@@ -165,11 +165,11 @@ class AnimationFrames:
         model: the model.
         x: unknowns, shape (rows, model.size), with ``finer`` rows from frame to frame.
         inputs: stacked inputs, shape (rows, model.inputs.size).
-        words: over each frame.
-        colour: of the words.
+        words: title of each frame.
+        colour: colour of the titles.
         interval: time from frame to frame, s.
-        section_axes: whether lines show the x axes of sections: of a rod that only turns nothing else moves.
-        finer: rows from frame to frame, so that paths are smooth where frames are far apart.
+        section_axes: whether lines show the x axes of sections, e.g. for a rod in pure torsion.
+        finer: number of rows per frame; more than 1 for smooth paths between distant frames.
     """
 
     model: Model
@@ -183,7 +183,7 @@ class AnimationFrames:
 
 
 def save_frames(frames: AnimationFrames, file: str | Path, *, progress: Callable[[float], None] | None = None) -> None:
-    """Draw an animation into a file, whole or not at all; arguments and errors as of :func:`animate_motion`."""
+    """Draw an animation into a file, atomically; arguments and errors of :func:`animate_motion`."""
     check_animation_path(file)
     film = _Film(frames)
     save_film(film.figure, film.show, len(frames.words), frames.interval, file, progress=progress)
@@ -198,15 +198,15 @@ def save_film(
     *,
     progress: Callable[[float], None] | None = None,
 ) -> None:
-    """Draw a figure that changes into a file, whole or not at all; errors as of :func:`animate_motion`.
+    """Draw the frames of a figure into a file, atomically; errors of :func:`animate_motion`.
 
     Args:
-        figure: of matplotlib.
-        show: changes the figure to a frame, from 0.
+        figure: matplotlib figure.
+        show: function (frame index from 0) that updates the figure.
         count: number of frames.
         interval: time from frame to frame, s.
-        file: its suffix is one of FORMATS.
-        progress: receives the share of the frames that are drawn.
+        file: path with a suffix of FORMATS.
+        progress: called with the share of drawn frames, 0 to 1.
     """
     check_animation_path(file)
     path = Path(file)
@@ -249,7 +249,7 @@ def motion_frames(motion: Motion, times: FloatArray, speed: float) -> AnimationF
 
 
 def _time_words(motion: Motion, times: FloatArray, speed: float) -> list[str]:
-    """The time of each frame, with as many digits as tell it from the next, and the speed where it is not real."""
+    """Titles with the time of each frame, distinct from frame to frame, and the speed if it is not 1."""
     interval = times[-1] / max(1, len(times) - 1)
     digits = max(1, int(np.ceil(-np.log10(interval)))) if interval > 0 else 1
     remark = ""
@@ -262,11 +262,11 @@ def _time_words(motion: Motion, times: FloatArray, speed: float) -> list[str]:
 
 @contextmanager
 def _writer_of(figure: Any, suffix: str, seconds_a_frame: float) -> Iterator[tuple[Any, Path]]:
-    """A writer of frames, and the file that it fills in a folder that is gone afterwards."""
+    """A frame writer and the path of its file in a temporary folder; the folder is removed at exit."""
     from matplotlib.animation import FFMpegWriter, PillowWriter
 
     with tempfile.TemporaryDirectory() as folder:
-        # Writers know the format by the suffix, which a file that is moved to its place later cannot have.
+        # Writers take the format from the suffix, which a temporary file of an atomic write does not have.
         drawn = Path(folder) / f"motion{suffix}"
         if suffix == ".gif":
             writer = PillowWriter(fps=_rate_of_gif(seconds_a_frame))
@@ -276,7 +276,7 @@ def _writer_of(figure: Any, suffix: str, seconds_a_frame: float) -> Iterator[tup
         try:
             yield writer, drawn
         except BaseException:
-            # ffmpeg waits for more frames until it is told that there are none.
+            # Ffmpeg waits for further frames until its input is closed.
             if isinstance(writer, FFMpegWriter):
                 with suppress(CalledProcessError, OSError):
                     writer.finish()
@@ -284,7 +284,7 @@ def _writer_of(figure: Any, suffix: str, seconds_a_frame: float) -> Iterator[tup
 
 
 def _rate_of_gif(seconds_a_frame: float) -> float:
-    """Frames a second such that the writer, which cuts off to thousandths of a second, comes to whole hundredths."""
+    """Frames per second, chosen so that the writer, which truncates to milliseconds, gives whole hundredths."""
     hundredths = max(1, round(100 * seconds_a_frame))
     thousandths = 10 * hundredths + 0.5
     return 1000 / thousandths
@@ -292,25 +292,25 @@ def _rate_of_gif(seconds_a_frame: float) -> float:
 
 @dataclass(frozen=True)
 class _Moving:
-    """A line that is led through other points from frame to frame.
+    """A line with different points in each frame.
 
     Attributes:
-        line: of matplotlib.
-        points: by row, shape (rows, k, 3), m; of a trail the one point that is reached, shape (rows, 3).
+        line: matplotlib line.
+        points: points of each row, shape (rows, k, 3), m; for a trail the newest point, shape (rows, 3), m.
     """
 
     line: Any
     points: FloatArray
 
     def at(self, index: int) -> FloatArray:
-        """Points of a row, shape (k, 3)."""
+        """Points of a row, shape (k, 3), m."""
         if self.points.ndim == 3:
             return np.asarray(self.points[index])
         return self.points[: index + 1]
 
 
 class _Film:
-    """A figure that shows one time of a motion after the other."""
+    """A figure that shows the frames of a motion one by one."""
 
     def __init__(self, frames: AnimationFrames) -> None:
         shapes = moving_shapes(frames.model, np.arange(len(frames.x), dtype=float), frames.x, frames.inputs)
@@ -330,19 +330,19 @@ class _Film:
         draw_supports(self._canvas, frames.model.scene)
         self._set_limits(shapes)
         handles, labels = self._canvas.axes.get_legend_handles_labels()
-        # One rod alone needs no name.
+        # A single rod has no legend entry.
         if len(handles) > 1:
             self.figure.legend(handles, labels, loc="outside right center", fontsize=9)
 
     def show(self, index: int) -> None:
-        """Lead all lines to a frame, and write its words over them."""
+        """Move all lines to a frame, and set its title."""
         for moving in self._lines:
             self._canvas.move(moving.line, moving.at(index * self._frames.finer))
         words = self._frames.words[index]
         self._canvas.axes.set_title(words, fontsize=10, color=self._frames.colour)
 
     def _draw(self, shapes: MovingShapes) -> list[_Moving]:
-        """Draw all that moves; returns it."""
+        """Draw all moving lines, and return them."""
         canvas = self._canvas
         followed = shapes.followed.values()
         lines = [_Moving(canvas.line(path[:1], color="0.55", linewidth=1.2), path) for path in followed]
@@ -359,7 +359,7 @@ class _Film:
         return lines
 
     def _draw_obstacles(self, frames: AnimationFrames, shapes: MovingShapes) -> list[_Moving]:
-        """Draw the obstacles that move with bodies; returns them."""
+        """Draw the obstacles on moving bodies, and return them."""
         lines = []
         for obstacle in frames.model.scene.obstacles:
             if obstacle.body is None:
@@ -375,7 +375,7 @@ class _Film:
         return lines
 
     def _draw_section_axes(self, frames: AnimationFrames, shapes: MovingShapes) -> list[_Moving]:
-        """Draw the x axes of a few sections of each rod; returns them."""
+        """Draw the x axes of a few sections of each rod, and return them."""
         lines = []
         for index, name in enumerate(shapes.rods):
             poses = section_poses(frames.model, name, TURNING, frames.x, frames.inputs)
@@ -389,7 +389,7 @@ class _Film:
         return lines
 
     def _set_limits(self, shapes: MovingShapes) -> None:
-        """Axes with room for the whole motion, and of one scale."""
+        """Set limits of the axes for the whole motion, with equal scales."""
         canvas = self._canvas
         canvas.label_axes()
         canvas.axes.locator_params(nbins=TICKS)

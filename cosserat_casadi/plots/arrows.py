@@ -14,12 +14,12 @@ from cosserat_casadi.plots.colours import FORCES, LINE_FORCES, MOMENTS
 
 @dataclass(frozen=True)
 class ArrowStyle:
-    """How arrows of one sort are drawn.
+    """Style of the arrows of one sort.
 
     Attributes:
-        share: length of the largest one, relative to the scene.
-        colour: of all.
-        width: of the shaft, points.
+        share: length of the largest arrow over the size of the scene.
+        colour: colour of all arrows.
+        width: width of the shaft, points.
     """
 
     share: float
@@ -35,11 +35,11 @@ STYLES = {
 """Forces at a point, moments, forces per length. Arrows are scaled within their own sort."""
 
 MOST_LINE_ARROWS = 24
-"""Arrows of forces per length from which on some are left out, evenly: arrows of many rods hide the rods."""
+"""Largest number of arrows of forces per length; beyond it arrows are thinned evenly."""
 
 
 def lies_in_plane(arrow: Arrow, normal: int) -> bool:
-    """Whether the plane across a world axis shows it: a force lies in the plane, a moment stands across it."""
+    """Whether an arrow shows in the plane normal to a world axis: a force in the plane, a moment normal to it."""
     outside = np.delete(arrow.vector, normal) if arrow.sort == "moment" else arrow.vector[[normal]]
     largest_outside = np.abs(outside).max()
     largest = np.abs(arrow.vector).max()
@@ -47,14 +47,14 @@ def lies_in_plane(arrow: Arrow, normal: int) -> bool:
 
 
 def draw_arrows(canvas: Canvas, arrows: Sequence[Arrow]) -> None:
-    """Draw the arrows of all loads, a moment across a plane as a turning sign."""
+    """Draw the arrows of all loads; a moment normal to the plane is drawn as a rotation sign."""
     for sort, style in STYLES.items():
         of_sort = [arrow for arrow in arrows if arrow.sort == sort]
         every = -(-len(of_sort) // MOST_LINE_ARROWS) if sort == "line" else 1
-        # The largest arrow of a sort has the length that its style gives it, whatever its unit.
+        # The length of the largest arrow of a sort is set by its style, whatever its unit.
         largest = max((float(np.linalg.norm(arrow.vector)) for arrow in of_sort), default=0.0)
         for index, arrow in enumerate(of_sort):
-            # One of every few is drawn, and each that the legend names.
+            # Every k-th arrow is drawn, and each arrow with a legend entry.
             if index % every and not arrow.label:
                 continue
             if sort == "moment" and canvas.plane is not None:

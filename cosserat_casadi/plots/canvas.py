@@ -1,4 +1,4 @@
-"""Axes that show a scene in space, or in the coordinate plane that holds it."""
+"""Axes of a scene in space, or in the coordinate plane of a planar scene."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ Plane = tuple[int, int]
 
 SPACE = (0, 1, 2)
 WORLD: FloatArray = np.eye(3)
-"""The axes of the world, a row each."""
+"""World axes, one per row, shape (3, 3)."""
 
 AXIS_NAMES = "xyz"
 
 TICKS = 5
-"""Most intervals between the ticks of the longest axis in space; of shorter ones there are fewer."""
+"""Most intervals between the ticks of the longest axis in space; shorter axes have fewer."""
 
 LABEL_HEIGHT = 0.05
-"""Height of the name of the vertical axis above its end, over the longest side."""
+"""Height of the label of the vertical axis above its end, over the longest side."""
 
 LABEL_DISTANCE = 9.0
-"""Distance of the numbers of an axis in space from its name, points: nearer they stand on each other."""
+"""Distance between tick labels and axis label in space, points; with less they overlap."""
 
 SMALL = 8
 """Size of letters in a small panel, points."""
@@ -37,7 +37,7 @@ THINNEST_BOX = 0.4
 """Least side of the box of a scene in space, relative to the longest."""
 
 ELEVATION, AZIMUTH = np.radians(22.0), np.radians(-58.0)
-"""Direction from which space is seen."""
+"""View direction of plots in space."""
 
 BOX = 1.906
 """Diagonal of a box of zoom 1, in the units in which matplotlib's panel is PANEL high."""
@@ -48,26 +48,26 @@ MARGIN, SMALL_MARGIN = 0.25, 0.2
 """Room for labels on each side of a panel in space, and of a small one, inches."""
 
 FLAT = 1e-9
-"""Share of an extent below which it counts as zero."""
+"""Threshold of zero extent, relative to the largest extent."""
 
 NUMBER_DISTANCE, SMALL_NUMBER_DISTANCE = 12.0, 8.0
 """Distance of the vertical axis from its numbers, points, and in a small panel; matplotlib adds 8 points to its pad."""
 
 CORNER = 0.12
-"""Distance from the front corner of the box, relative to its longest side, in which one axis alone has a number."""
+"""Distance from the front corner of the box, over its longest side, within which only one axis has tick labels."""
 
 
 @dataclass(frozen=True)
 class Canvas:
-    """Axes of matplotlib, drawn on in world coordinates.
+    """Matplotlib axes for drawing in world coordinates.
 
     Attributes:
-        axes: of the projection that the plane asks for.
-        plane: the coordinate plane that is shown; None shows space.
-        size: largest extent of the scene, m, which arrows and section axes are scaled with.
-        view_axes: the axes that the plane is counted in, a row each, shape (3, 3).
-        small: whether it is one of many panels, with small letters and few ticks.
-        named: words of its legend.
+        axes: matplotlib axes, 3D if the plane is None.
+        plane: the coordinate plane of the picture; None for space.
+        size: largest extent of the scene, m, the scale of arrows and section axes.
+        view_axes: the axes of the plane's coordinates, one per row, shape (3, 3).
+        small: whether it is a small panel, with small letters and few ticks.
+        named: labels in the legend.
     """
 
     axes: Any
@@ -79,13 +79,13 @@ class Canvas:
 
     @property
     def columns(self) -> tuple[int, ...]:
-        """World axes that are shown."""
+        """Indices of the displayed axes."""
         return self.plane or SPACE
 
     def line(self, points: FloatArray, **style: Any) -> Any:
-        """Draw a line through points, shape (k, 3); it is returned, and may be moved.
+        """Draw a line through points, shape (k, 3), m, and return it, for :meth:`move`.
 
-        The legend names each ``label`` once.
+        The legend shows each ``label`` once.
         """
         label = style.pop("label", None)
         coordinates = self.projected(points)
@@ -94,7 +94,7 @@ class Canvas:
         return drawn
 
     def move(self, line: Any, points: FloatArray) -> None:
-        """Lead a line that was drawn through other points, shape (k, 3)."""
+        """Move an existing line to new points, shape (k, 3), m."""
         coordinates = self.projected(points).T
         if self.plane is None:
             line.set_data_3d(*coordinates)
@@ -102,12 +102,12 @@ class Canvas:
             line.set_data(*coordinates)
 
     def shaded_line(self, points: FloatArray, values: FloatArray, **style: Any) -> Any:
-        """Draw a line whose colour follows values; it is returned, for a colour bar.
+        """Draw a line coloured by values, and return it, for a colour bar.
 
         Args:
-            points: shape (k, 3).
-            values: at the points, shape (k,).
-            style: colour map, limits of the values and the like.
+            points: points of the line, shape (k, 3), m.
+            values: values at the points, shape (k,).
+            style: arguments of the line collection, such as colour map and limits.
         """
         coordinates = self.projected(points)
         pieces = np.stack([coordinates[:-1], coordinates[1:]], axis=1)
@@ -121,16 +121,16 @@ class Canvas:
         return self.axes.add_collection(LineCollection(pieces, array=middles, **style))
 
     def markers(self, points: FloatArray, **style: Any) -> Any:
-        """Mark points, shape (k, 3); the marks are returned as one line."""
+        """Draw markers at points, shape (k, 3), m, and return them as one line."""
         return self.line(points, linestyle="none", **style)
 
     def legend_entry(self, label: str | None, **style: Any) -> None:
-        """Name a thing in the legend that is drawn without a line."""
+        """Add a legend entry for an object drawn without a line."""
         no_points = np.zeros((0, 3))
         self.line(no_points, label=label, **style)
 
     def polygon(self, corners: FloatArray, colour: str) -> None:
-        """Fill a polygon, shape (k, 3)."""
+        """Draw a filled polygon, corners (k, 3), m."""
         if self.plane is not None:
             self.axes.fill(*self.projected(corners).T, color=colour, alpha=0.25)
             return
@@ -141,7 +141,7 @@ class Canvas:
     def arrow(self, start: FloatArray, vector: FloatArray, *, colour: str, width: float, label: str | None) -> None:
         """Draw an arrow from a point, shapes (3,), m."""
         if self.plane is None:
-            # The box is that of the rods: the head of an arrow may lie outside.
+            # The box holds the rods: the head of an arrow may lie outside.
             style = {"color": colour, "linewidth": width, "label": label, "clip_on": False}
             self.axes.quiver(*start, *vector, arrow_length_ratio=0.25, **style)
             return
@@ -149,18 +149,18 @@ class Canvas:
         head = self.projected(start + vector)
         shape = {"arrowstyle": "-|>", "color": colour, "linewidth": width, "mutation_scale": 14}
         self.axes.annotate("", xy=head, xytext=tail, arrowprops=shape)
-        # An annotation neither enters the legend nor widens the axes by itself.
+        # Matplotlib neither adds annotations to the legend nor widens the axes for them.
         self.legend_entry(label, color=colour, linewidth=width)
         self.axes.update_datalim([tail, head])
         self.axes.autoscale_view()
 
     def turning_sign(self, point: FloatArray, moment: FloatArray, colour: str) -> None:
-        """Show a moment across the plane, which has no arrow in it, at its section; nothing in space.
+        """Draw the rotation sign of a moment normal to the plane at its section; in space draw nothing.
 
         Args:
-            point: of the section, shape (3,), m.
-            moment: shape (3,); its component across the plane gives the sense.
-            colour: of the sign.
+            point: position of the section, shape (3,), m.
+            moment: moment, shape (3,); its component along the normal gives the sense.
+            colour: colour of the sign.
         """
         if self.plane is None:
             return
@@ -175,11 +175,11 @@ class Canvas:
         self.axes.annotate(sign, self.projected(point), **style)
 
     def projected(self, points: FloatArray) -> FloatArray:
-        """Coordinates of points, shape (…, 3), in the axes that are shown, shape (…, 2) or (…, 3)."""
+        """Coordinates of points, shape (…, 3), in the displayed axes, shape (…, 2) or (…, 3)."""
         return np.asarray(points @ self.view_axes[list(self.columns)].T)
 
     def label_axes(self) -> None:
-        """Name the axes that are shown, with their unit; the vertical one of space where its end is known."""
+        """Label the displayed axes, with unit; the vertical axis in space only if its end is known."""
         right, up = self.columns[:2]
         style: dict[str, Any] = {}
         if self.plane is None:
@@ -191,7 +191,7 @@ class Canvas:
         self.axes.set_ylabel(f"{self._axis_name(up)}, m", **style)
 
     def _axis_name(self, index: int) -> str:
-        """Name of an axis that is shown: one of the world's, or the direction that it has in the world."""
+        """Label of a displayed axis: the name of a world axis, or its direction in the world."""
         direction = self.view_axes[index]
         if np.allclose(direction, WORLD[index], rtol=0, atol=1e-9):
             return AXIS_NAMES[index]
@@ -200,12 +200,12 @@ class Canvas:
         return f"along ({components})"
 
     def equalise(self, points: FloatArray) -> None:
-        """Give all axes one scale, about the points, shape (k, 3)."""
+        """Give all axes equal scales, with limits around the points, shape (k, 3), m."""
         if self.plane is not None:
             self.axes.set_aspect("equal", adjustable="datalim")
             self.axes.grid(alpha=0.3)
             return
-        # matplotlib has no equal aspect in space: a box about the points, with sides as their ranges, takes its part.
+        # Instead of an equal aspect in space, the sides of the box are proportional to the ranges of the points.
         highest = points.max(axis=0)
         lowest = points.min(axis=0)
         centre = (highest + lowest) / 2
@@ -216,35 +216,35 @@ class Canvas:
         # As a tuple: matplotlib would scale the array itself.
         self.axes.set_box_aspect(tuple(widths), zoom=self._zoom(widths))
         for name, width in zip(AXIS_NAMES, widths, strict=True):
-            # Short axes have room for few ticks.
+            # Short axes get few ticks.
             most = FEW_TICKS if self.small else TICKS
             self.axes.locator_params(axis=name, nbins=max(1 if self.small else 2, round(most * width / widths.max())))
         self._clear_corner(limits, CORNER * widths.max())
-        # matplotlib measures this distance in the horizontal sides: beside a tall box numbers would stand on its edge.
+        # Matplotlib scales this distance with the horizontal sides: beside a tall box tick labels would touch its edge.
         distance = SMALL_NUMBER_DISTANCE if self.small else NUMBER_DISTANCE
         self.axes.tick_params(axis="z", pad=distance * widths.max() / widths[:2].mean() - 8.0)
         self.axes.view_init(elev=np.degrees(ELEVATION), azim=np.degrees(AZIMUTH))
-        # Beside the axis its name would stand on the ticks of a tall box, and outside of a small panel.
+        # A label beside the axis would overlap the ticks of a tall box, or lie outside a small panel.
         right, back, top = limits[:, 1]
         self.axes.text(
             right, back, top + LABEL_HEIGHT * widths.max(), "z, m", ha="center", fontsize=SMALL if self.small else None
         )
 
     def _clear_corner(self, limits: FloatArray, room: float) -> None:
-        """Leave out the first ticks of y where ticks of x end beside them, at the front corner of the box.
+        """Remove the first ticks of y that would overlap the last ticks of x at the front corner of the box.
 
         Args:
-            limits: of the axes, a row each, shape (3, 2), m.
-            room: distance from the corner in which numbers of both axes would stand on each other, m.
+            limits: limits of the axes, one axis per row, shape (3, 2), m.
+            room: distance from the corner within which tick labels of both axes overlap, m.
         """
         ticks = [axis.get_majorticklocs() for axis in (self.axes.xaxis, self.axes.yaxis)]
         right, (front, back) = limits[0, 1], limits[1]
         if np.any((ticks[0] > right - room) & (ticks[0] <= right)):
-            # A tick beyond the limits would move these.
+            # A tick beyond the limits would move the limits.
             self.axes.set_yticks(ticks[1][(ticks[1] > front + room) & (ticks[1] <= back)])
 
     def _zoom(self, widths: FloatArray) -> float:
-        """Zoom by which a box with these sides fills its panel but for the labels."""
+        """Zoom at which a box with these sides fills its panel up to the labels."""
         x, y, z = BOX * widths / np.linalg.norm(widths)
         sine, cosine = abs(np.sin(AZIMUTH)), abs(np.cos(AZIMUTH))
         seen = np.array([x * sine + y * cosine, z * np.cos(ELEVATION) + (x * cosine + y * sine) * np.sin(ELEVATION)])
@@ -256,7 +256,7 @@ class Canvas:
 def add_canvas(
     figure: Any, cell: tuple[Any, ...], view: tuple[Plane | None, FloatArray], size: float, *, small: bool = False
 ) -> Canvas:
-    """New axes in a cell of a figure, as ``add_subplot`` takes it; a view is a plane, None in space, and its axes."""
+    """New axes in a cell (argument of ``add_subplot``) of a figure; a view is a plane, or None, and its axes."""
     plane, view_axes = view
     axes = figure.add_subplot(*cell, projection="3d" if plane is None else None)
     return Canvas(axes, plane, size, view_axes, small)

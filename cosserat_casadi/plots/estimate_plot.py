@@ -1,4 +1,4 @@
-"""The figure of an estimate: each unknown over the rows, with the intervals that hold 95 % of the posterior.
+"""The figure of an estimate: each unknown over the rows, with 95 % credible intervals.
 
 matplotlib is an extra and is imported inside functions only.
 """
@@ -14,7 +14,7 @@ from cosserat_casadi.plots.colours import CATEGORIES
 from cosserat_casadi.plots.figure import add_title, panel_grid
 
 MOST_PANELS = 12
-"""Unknowns that have a panel: the first."""
+"""Largest number of unknowns with a panel, the first ones."""
 
 COLUMNS = 3
 """Panels in a row."""
@@ -24,7 +24,7 @@ SECOND = {"linestyle": "", "marker": "o", "markerfacecolor": "none", "color": CA
 
 
 def plot_estimate(found: Estimate) -> Any:
-    """Figure of an estimate; rows that were not found are gaps, open markers second-best values."""
+    """Figure of an estimate; rows without an estimate are gaps, open markers are second-best minima."""
     shown = min(MOST_PANELS, len(found.labels))
     figure, panels = panel_grid(shown, COLUMNS, (4.4, 2.6), (0.0, 1.0), sharex=True)
     rows = np.arange(1, len(found.cases) + 1)

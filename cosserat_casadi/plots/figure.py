@@ -1,4 +1,4 @@
-"""Common part of all figures: the class, the titles, and writing a file.
+"""Functions common to all figures: class, titles, and writing a file.
 
 matplotlib is an extra and is imported inside functions only.
 """
@@ -19,9 +19,9 @@ FORMATS = (".png", ".pdf", ".svg")
 """Suffixes that a figure may have."""
 
 TITLE_LETTER = 0.14
-"""Mean width of a letter of a title, inches."""
+"""Mean width of a letter in a title, inches."""
 
-# A date or a version in a file would make two drawings of one thing differ.
+# Without date and version, the same figure gives the same file.
 _METADATA: dict[str, dict[str, None]] = {
     "png": {"Software": None},
     "pdf": {"CreationDate": None, "Producer": None},
@@ -53,8 +53,8 @@ def check_plot_path(path: str | Path, others: tuple[str, ...] = ()) -> None:
     """Refuse a figure that cannot be made, before any work is done for it.
 
     Args:
-        path: the file.
-        others: suffixes of meshes, where the user may ask for them instead: a refusal names them too.
+        path: path of the file.
+        others: further accepted suffixes, of meshes, for the message.
 
     Raises:
         SceneError: the suffix is none of FORMATS.
@@ -73,10 +73,10 @@ def panel_grid(
 
     Args:
         count: number of panels.
-        columns: most in a row.
-        panel: width and height of one, inches.
-        margin: room beside and above all of them, inches.
-        shared: axes that they share, as ``subplots`` takes them.
+        columns: largest number of panels in a row.
+        panel: width and height of a panel, inches.
+        margin: margin beside and above all panels, inches.
+        shared: shared axes, arguments of ``subplots``.
     """
     columns = max(1, min(columns, count))
     rows = max(1, ceil(count / columns))
@@ -89,23 +89,23 @@ def panel_grid(
 
 
 def write_figure(figure: Any, path: Path, dpi: int = 150) -> None:
-    """Write a figure into a file of one of FORMATS, whole or not at all; the same figure gives the same bytes."""
+    """Write a figure into a file of one of FORMATS, atomically; the same figure gives the same bytes."""
     import matplotlib as mpl
 
     suffix = path.suffix.lower()[1:]
     content = io.BytesIO()
-    # SVG names its parts by random numbers, unless a salt is given.
+    # Element ids in SVG are random without a salt.
     with mpl.rc_context({"svg.hashsalt": "cosserat"}):
         figure.savefig(content, format=suffix, dpi=dpi, metadata=_METADATA[suffix])
     write_atomically(path, content.getvalue())
 
 
 def add_subtitle(axes: Any, words: str, *, good: bool) -> None:
-    """Write how good a result is over its axes, or in red how the solve ended instead."""
+    """Write the quality of a result above its axes, or in red the failure of its solve."""
     axes.set_title(words, fontsize=10, color=PLAIN_TEXT if good else FAILURE, wrap=True)
 
 
 def add_title(figure: Any, title: str | None) -> None:
-    """Write the title of a scene over its figure, in as many lines as its width asks for."""
+    """Write the title of a scene above its figure, wrapped to the figure's width."""
     text = textwrap.fill(title or "Untitled scene", int(figure.get_figwidth() / TITLE_LETTER))
     figure.suptitle(text, fontsize=14, fontweight="bold")

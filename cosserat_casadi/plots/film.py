@@ -1,4 +1,4 @@
-"""Shapes and motions in three dimensions, for Blender and the like: meshes on frames that move.
+"""Solutions and motions as 3D meshes on moving frames, e.g. for Blender.
 
 A film is written as glTF (``.glb``, one file that browsers and Blender open) or as USD (``.usda``, text with time
 samples). Neither needs a library.
@@ -36,7 +36,7 @@ SIDES = 16
 """Sides of a round section."""
 
 THIN = 2e-3
-"""Radius of cables and of rods without a section over the size of the scene; the least radius of other rods."""
+"""Radius of cables and of rods without a section, and least radius of other rods, over the size of the scene."""
 
 Faces = npt.NDArray[np.int64]
 
@@ -46,15 +46,15 @@ Colour = tuple[float, float, float, float]
 
 @dataclass(frozen=True)
 class FilmPart:
-    """A mesh whose points are fixed to frames.
+    """A mesh with points fixed to frames.
 
     Attributes:
-        name: of the thing that it shows.
-        colour: of the mesh.
-        points: in the axes of their frames, shape (n, 3), m.
+        name: name of the shown object.
+        colour: colour of the mesh.
+        points: points in the axes of their frames, shape (n, 3), m.
         frame: index of the frame of each point, shape (n,).
         faces: indices of the corners of triangles, counter-clockwise from outside, shape (m, 3).
-        poses: of the frames, shapes (T, k, 3) and (T, k, 4).
+        poses: positions, m, and quaternions of the frames, shapes (T, k, 3) and (T, k, 4).
     """
 
     name: str
@@ -65,19 +65,19 @@ class FilmPart:
     poses: Poses
 
     def at(self, index: int) -> FloatArray:
-        """Points at a time, world axes, shape (n, 3), m."""
+        """Points at the time of this index, world axes, shape (n, 3), m."""
         turned = np.einsum("nij,nj->ni", rotations(self.poses.quaternion[index])[self.frame], self.points)
         return np.asarray(self.poses.position[index][self.frame] + turned)
 
 
 @dataclass(frozen=True)
 class Film:
-    """Parts over time.
+    """Meshes of a scene over time.
 
     Attributes:
-        title: of the scene.
-        times: shape (T,), s; one time is a picture.
-        parts: rods, disks, actuators, bodies, obstacles.
+        title: title of the scene.
+        times: times, shape (T,), s; a single time gives a still picture.
+        parts: meshes of rods, disks, actuators, bodies and obstacles.
     """
 
     title: str
@@ -86,12 +86,12 @@ class Film:
 
 
 def write_film(result: Solution | Motion, path: str | Path, speed: float = 1.0) -> None:
-    """Write a solution or a motion as meshes, whole or not at all; the suffix says in which format.
+    """Write a solution or a motion as meshes, atomically, in the format of the suffix.
 
     Args:
-        result: of rods.
-        path: the file; its suffix is one of MESHES.
-        speed: 1 shows a motion as fast as it is, 0.1 ten times slower.
+        result: solution or motion of a scene of rods.
+        path: path of the file, with a suffix of MESHES.
+        speed: playing speed over real time: 1 is real time, 0.1 is ten times slower.
 
     Raises:
         SceneError: the suffix is none of MESHES, or the motion has no state.
@@ -99,7 +99,7 @@ def write_film(result: Solution | Motion, path: str | Path, speed: float = 1.0) 
     """
     if Path(path).suffix.lower() not in MESHES:
         raise SceneError(Problem("path", f"{path} has no suffix of a film", f"use one of {', '.join(MESHES)}"))
-    # Imported here: a run needs one of the two writers.
+    # Imported here: only one of the two writers is needed.
     if Path(path).suffix.lower() == ".glb":
         from cosserat_casadi.plots.gltf import glb
 
@@ -111,7 +111,7 @@ def write_film(result: Solution | Motion, path: str | Path, speed: float = 1.0) 
 
 
 def film_of(result: Solution | Motion, speed: float = 1.0) -> Film:
-    """The film of a motion at its times, or of a solution as one picture.
+    """The film of a motion at its times, or of a solution as a still picture.
 
     Raises:
         SceneError: the motion has no state.
@@ -163,7 +163,7 @@ def _parts(model: Model, x: FloatArray, inputs: FloatArray) -> Iterator[FilmPart
 
 
 def _single(poses: Poses) -> Poses:
-    """Poses of one frame, in the shapes of a row of frames."""
+    """Poses of one frame, with an axis of length 1 for the frames."""
     return Poses(poses.position[:, None], poses.quaternion[:, None])
 
 
@@ -193,7 +193,7 @@ def _outlines(rod: Any, least: float) -> FloatArray:
 
 
 def _rings(count: int, sides: int, first: int = 0) -> Faces:
-    """Triangles of a closed tube of rings, whose ends are filled."""
+    """Triangles of a tube of rings with closed ends."""
     around = np.arange(sides)
     ends = np.roll(around, -1)
     starts = first + sides * np.arange(count - 1)[:, None]
@@ -212,7 +212,7 @@ def _tube(name: str, colour: Colour, outline: FloatArray, poses: Poses) -> FilmP
 
 
 def _disks(name: str, colour: Colour, radius: float, thickness: float, poses: Poses) -> FilmPart:
-    """Cylinders about the frames of a row of disks, or of a body that is one."""
+    """Cylinders at the frames of a row of disks, or of a disk that is a body."""
     count = poses.position.shape[1]
     ring = _ring(radius)
     heights = np.repeat([-thickness / 2, thickness / 2], SIDES)
@@ -223,7 +223,7 @@ def _disks(name: str, colour: Colour, radius: float, thickness: float, poses: Po
 
 
 def _body(name: str, corners: FloatArray, radius: float | None, least: float, poses: Poses) -> FilmPart:
-    """A ball where the body has a radius, else the prism on the polygon of its joints, or a bar."""
+    """A ball if the body has a radius, else a prism on the polygon of its joints, or a bar."""
     if radius is not None or len(corners) < 3:
         start, end = (np.zeros(3), np.zeros(3)) if radius is not None else (corners[0], corners[-1])
         net = capsule_net(start, end, least if radius is None else radius)
@@ -236,7 +236,7 @@ def _body(name: str, corners: FloatArray, radius: float | None, least: float, po
 
 
 def _net(name: str, net: FloatArray, poses: Poses, colour: str = OBSTACLES) -> FilmPart:
-    """A surface through a net of points, shape (m, n, 3), on one frame."""
+    """A surface through a net of points, shape (m, n, 3), m, fixed to one frame."""
     rows, columns, _ = net.shape
     a = (columns * np.arange(rows - 1)[:, None] + np.arange(columns - 1)).ravel()
     faces = np.concatenate(

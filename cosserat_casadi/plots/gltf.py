@@ -1,6 +1,6 @@
 """Films as glTF 2.0, binary: https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html.
 
-What moves has a skin: a node for each frame, led by an animation, and points fixed to one node each.
+Moving parts have a skin: one animated node for each frame, and each point is fixed to one node.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.plots.film import Film, FilmPart
 
 Z_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
-"""Quaternion, x y z w, that stands the z axis upright, where glTF has y."""
+"""Quaternion, x y z w, that rotates the z axis to the vertical of glTF, y."""
 
 FLOAT, SHORT, INTEGER = 5126, 5123, 5125
-"""Numbers of the component types."""
+"""Codes of the component types in glTF."""
 
 TYPES = {FLOAT: "<f4", SHORT: "<u2", INTEGER: "<u4"}
 KINDS = {(): "SCALAR", (3,): "VEC3", (4,): "VEC4", (4, 4): "MAT4"}
 
 
 class _Document:
-    """A document that is being written, and its bytes."""
+    """A document under construction, and its binary buffer."""
 
     def __init__(self) -> None:
         self.data = bytearray()
@@ -43,13 +43,13 @@ class _Document:
         }
 
     def add(self, key: str, entry: dict[str, Any]) -> int:
-        """Append to a list of the document; the index of the entry."""
+        """Append to a list of the document, and return the index of the entry."""
         entries = self.json.setdefault(key, [])
         entries.append(entry)
         return len(entries) - 1
 
     def accessor(self, values: npt.ArrayLike, component: int, *, bounds: bool = False) -> int:
-        """Store numbers, shape (n, …); the index of their accessor."""
+        """Store numbers, shape (n, …), and return the index of their accessor."""
         array = np.ascontiguousarray(values, dtype=TYPES[component])
         entry: dict[str, Any] = {
             "bufferView": self.add(
@@ -68,7 +68,7 @@ class _Document:
         return self.add("accessors", entry)
 
     def written(self) -> bytes:
-        """The file: header, JSON and bytes."""
+        """Content of the file: header, JSON and binary buffer."""
         self.json["buffers"] = [{"byteLength": len(self.data)}]
         text = json.dumps({key: value for key, value in self.json.items() if value != []}, separators=(",", ":"))
         head = text.encode()
@@ -79,7 +79,7 @@ class _Document:
 
 
 def glb(film: Film) -> bytes:
-    """A film as the content of a ``.glb`` file; its animation has the times of the film."""
+    """Content of the ``.glb`` file of a film, animated at the times of the film."""
     document = _Document()
     document.json["scenes"][0]["name"] = film.title
     channels: list[dict[str, Any]] = []
@@ -92,7 +92,7 @@ def glb(film: Film) -> bytes:
         if times is None:
             document.json["nodes"][0]["children"].append(number)
             continue
-        # Joints move the points of a skin, whatever the place of its node.
+        # Joints alone move the points of a skin; the transform of its node is ignored.
         document.json["scenes"][0]["nodes"].append(number)
         joints = []
         for frame in range(part.poses.position.shape[1]):
@@ -119,7 +119,7 @@ def glb(film: Film) -> bytes:
 
 
 def _primitive(document: _Document, part: FilmPart, times: int | None) -> dict[str, Any]:
-    """The triangles of a part as they are at the beginning."""
+    """The triangles of a part at the first time."""
     points = part.at(0)
     attributes = {
         "POSITION": document.accessor(points, FLOAT, bounds=True),
@@ -141,26 +141,26 @@ def _primitive(document: _Document, part: FilmPart, times: int | None) -> dict[s
 
 
 def _normals(points: FloatArray, part: FilmPart) -> FloatArray:
-    """Unit normals at the points: the mean of the triangles that meet there, by their areas."""
+    """Unit normals at the points: area-weighted means over the adjacent triangles."""
     a, b, c = (points[part.faces[:, corner]] for corner in range(3))
     across = np.cross(b - a, c - a)
     normals = np.zeros_like(points)
     for corner in range(3):
         np.add.at(normals, part.faces[:, corner], across)
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    # A point of triangles without area has any normal.
+    # The normal at a point of degenerate triangles is arbitrary.
     return np.where(lengths > 0.0, normals / np.maximum(lengths, 1e-300), [0.0, 0.0, 1.0])
 
 
 def _continuous(quaternions: FloatArray) -> FloatArray:
-    """Quaternions over time, shape (T, 4), each of the sign that is next to the one before."""
+    """Quaternions over time, shape (T, 4), with signs chosen for continuity."""
     products = np.einsum("ti,ti->t", quaternions[1:], quaternions[:-1])
     signs = np.cumprod(np.concatenate([[1.0], np.where(products < 0.0, -1.0, 1.0)]))
     return np.asarray(signs[:, None] * quaternions)
 
 
 def _inverses(part: FilmPart) -> FloatArray:
-    """Inverses of the poses of the frames at the beginning, column by column, shape (k, 4, 4)."""
+    """Inverse poses of the frames at the first time, column-major, shape (k, 4, 4)."""
     turned_back = np.swapaxes(rotations(part.poses.quaternion[0]), 1, 2)
     matrices = np.tile(np.eye(4), (len(turned_back), 1, 1))
     matrices[:, :3, :3] = turned_back

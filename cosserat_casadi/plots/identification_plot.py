@@ -1,4 +1,4 @@
-"""The figure of an identification: measured beside modelled, residuals by measurement, and ellipses of the unknowns.
+"""The figure of an identification: measured and modelled values, residuals by measurement, ellipses of the unknowns.
 
 matplotlib is an extra and is imported inside functions only.
 """
@@ -15,16 +15,16 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.plots.figure import add_title, panel_grid
 
 MOST_PANELS = 4
-"""Most measured quantities that have a panel each."""
+"""Largest number of panels of measured quantities."""
 
 MOST_ELLIPSES = 6
-"""Most pairs of unknowns that have an ellipse: the pairs with the strongest correlation."""
+"""Largest number of pairs of unknowns with an ellipse: the most strongly correlated pairs."""
 
 WIDTH = 0.8
-"""Width of the rows of one motion among the residuals, where a case is 1 wide."""
+"""Width of the rows of one motion among the residuals, relative to the width of a case."""
 
 CHI_SQUARE_95 = 5.991464547107979
-"""Bound of the squared distance from the mean, of a normal distribution in the plane, for 95 % of all draws."""
+"""95 % quantile of the squared Mahalanobis distance of a normal distribution in the plane."""
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 
@@ -45,7 +45,7 @@ def plot_identification(found: Identification) -> Any:
 
 
 def _draw_measurement(axes: Any, found: Identification, number: int) -> None:
-    """Modelled over measured, where they are equal on the line; in motions both over time."""
+    """Draw modelled over measured values, with the line of equality; for motions both over time."""
     measurement = found.model.scene.measurements[number]
     rows = [row for row in found.rows if row.measurement == number]
     if rows[0].time is not None:
@@ -68,7 +68,7 @@ def _draw_measurement(axes: Any, found: Identification, number: int) -> None:
 
 
 def _draw_path(axes: Any, measurement: Any, rows: list[Row]) -> None:
-    """Measured and modelled numbers over time."""
+    """Draw measured and modelled values over time."""
     for entry, name in enumerate(measurement.entries[: len(measurement.differences)]):
         chosen = [row for row in rows if row.entry == entry]
         if not chosen:
@@ -88,16 +88,16 @@ def _values(rows: list[Row]) -> FloatArray:
 
 
 def _draw_residuals(axes: Any, found: Identification) -> None:
-    """Residuals of every measurement in standard deviations, case after case."""
+    """Draw the residuals of every measurement in standard deviations, case by case."""
     latest = max((row.time or 0.0 for row in found.rows), default=0.0)
     for number, measurement in enumerate(found.model.scene.measurements):
         for held_out in (False, True):
             rows = [row for row in found.rows if row.measurement == number and row.held_out is held_out]
             if not rows:
                 continue
-            # Cases that were held out stand behind those that were fitted.
+            # Held-out cases follow the fitted ones.
             shift = len(found.cases) if held_out else 0
-            # Rows of a motion stand side by side in the order of their times.
+            # Rows of a motion are side by side in the order of their times.
             places = [row.case + 1.0 + shift for row in rows]
             if rows[0].time is not None and latest > 0.0:
                 places = [
@@ -113,7 +113,7 @@ def _draw_residuals(axes: Any, found: Identification) -> None:
 
 
 def _pairs(found: Identification) -> list[tuple[int, int]]:
-    """Pairs of unknowns that are determined, the pair with the strongest correlation first."""
+    """Pairs of determined unknowns, in descending order of their correlation."""
     known = np.flatnonzero(np.nan_to_num(found.sigma) > 0.0).tolist()
     correlation = np.abs(found.statistics.correlation)
     pairs = sorted(combinations(known, 2), key=lambda pair: -correlation[pair])
@@ -121,7 +121,7 @@ def _pairs(found: Identification) -> list[tuple[int, int]]:
 
 
 def _draw_ellipse(axes: Any, found: Identification, first: int, second: int) -> None:
-    """The ellipse that holds both unknowns in 95 % of all experiments."""
+    """Draw the 95 % confidence ellipse of two unknowns."""
     chosen = [first, second]
     covariance = found.statistics.covariance[np.ix_(chosen, chosen)]
     sizes = np.sqrt(np.diagonal(covariance))

@@ -1,4 +1,4 @@
-"""The figure of materials: stress of the section at each rod's base against each strain that is not linear.
+"""The figure of materials: stress resultant at the base of each rod over each strain with a nonlinear law.
 
 matplotlib is an extra and is imported inside functions only.
 """
@@ -27,16 +27,16 @@ POINTS = 241
 """Points of a curve."""
 
 FIBRE_STRAIN = 0.15
-"""Strain of the outermost fibre, and of extension, up to which curves are drawn, unless the law ends before."""
+"""Largest drawn strain of the outermost fibre, and of extension, within the range of the law."""
 
 HARDLY_BENT = 0.1
-"""Distance from the line of small strains, over the largest stress, below which a curve is drawn twice as far."""
+"""Deviation from the linear law, over the largest stress, below which the drawn range is doubled."""
 
 PAST_THE_END = 1.3
-"""How far a curve is drawn beyond the end of its law, over the strain there."""
+"""Drawn range of a curve over the range of its law."""
 
 SMALL = 1e-6
-"""Change of a strain at which its slope at zero is taken, over the largest that is drawn."""
+"""Step of the difference quotient at zero strain, over the largest drawn strain."""
 
 AXES = (
     *(("bending_x", "curvature $K_x$, 1/m", "moment, N m"), ("bending_y", "curvature $K_y$, 1/m", "moment, N m")),
@@ -47,14 +47,14 @@ AXES = (
 
 
 class StressCurve(NamedTuple):
-    """Stress against the change of one strain, all other strains unchanged.
+    """Stress over the change of one strain, with all other strains fixed.
 
     Attributes:
         component: index of the strain.
-        change: of it, shape (k,).
-        stress: shape (k,), N m or N.
-        linear: stress by the slope of the law at zero, shape (k,).
-        inside: where the law of the material holds, shape (k,).
+        change: change of the strain, shape (k,).
+        stress: stress resultant, shape (k,), N m or N.
+        linear: stress resultant of the linearised law, shape (k,), N m or N.
+        inside: whether the strain is in the range of the law, shape (k,).
     """
 
     component: int
@@ -65,7 +65,7 @@ class StressCurve(NamedTuple):
 
 
 def plot_materials(scene: scenes.Scene) -> Any:
-    """Figure of the materials of a scene: a panel for each strain of each rod that is not linear.
+    """Figure of the materials of a scene: a panel for each strain of each rod with a nonlinear law.
 
     Raises:
         SceneError: all rods are linear.
@@ -75,7 +75,7 @@ def plot_materials(scene: scenes.Scene) -> Any:
         raise SceneError(
             Problem("--plot", "draws materials that are not linear, and the scene has none", "leave it out")
         )
-    # Four panels make a square.
+    # Four panels are arranged two by two.
     figure, panels = panel_grid(len(curves), 2 if len(curves) == 4 else COLUMNS, (3.6, 3.0), (1.0, 0.8))
     labels: dict[str, Any] = {}
     for panel, (rod, curve) in zip(panels, curves, strict=True):
@@ -88,7 +88,7 @@ def plot_materials(scene: scenes.Scene) -> Any:
 
 
 def stress_curves(rod: RodProperties) -> list[StressCurve]:
-    """Curves of the section at the base of a rod for each admitted strain that is not linear."""
+    """Curves of the section at the base of a rod for each admitted strain with a nonlinear law."""
     law = rod.beyond_hooke
     if law is None:
         return []
@@ -123,7 +123,7 @@ def stress_curves(rod: RodProperties) -> list[StressCurve]:
 
 
 def _largest_change(rod: RodProperties, component: int) -> float:
-    """Change of a strain up to which it is drawn."""
+    """Largest drawn change of a strain."""
     if component >= 3:
         return FIBRE_STRAIN
     # The radius of gyration of the section, by its stiffnesses: EI = EA r²/4 of a circle.
@@ -134,7 +134,7 @@ def _largest_change(rod: RodProperties, component: int) -> float:
 
 
 def _draw(panel: Any, rod: str, curve: StressCurve) -> None:
-    """One panel: the law, where it holds; the linear rod beside it."""
+    """Draw one panel: the law within its range, and the linearised law."""
     name, abscissa, ordinate = AXES[curve.component]
     panel.plot(curve.change, curve.linear, color=PLAIN_TEXT, linewidth=1.0, linestyle="--", label="small strains")
     law = np.where(curve.inside, curve.stress, np.nan)

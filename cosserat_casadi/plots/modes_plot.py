@@ -25,25 +25,25 @@ from cosserat_casadi.plots.scene_view import View, view_of
 from cosserat_casadi.plots.scenery import CLAMP
 
 SECTIONS = np.linspace(0.0, 1.0, 101)
-"""Abscissae at which rods are drawn."""
+"""Abscissae of the drawn points of rods."""
 
 MARKED = slice(None, None, 10)
-"""Sections that are marked, so that one sees them move along the rod and turn."""
+"""Indices into SECTIONS of marked sections, which show motion along the rod and rotation."""
 
 ENDS_MARKED = slice(None, None, len(SECTIONS) // 2)
-"""Sections that are marked of each of several rods, ends and middles: dots of many rods hide their shapes."""
+"""Indices of marked sections in scenes with several rods: ends and middles; more dots would hide the shapes."""
 
 SHARE = 0.2
-"""Size of the largest displacement that is drawn, relative to the scene's extent."""
+"""Largest drawn displacement, relative to the scene's extent."""
 
 TURNED = 1.0
-"""Largest angle of a section that is drawn, rad, where sections turn more than they move."""
+"""Largest drawn rotation angle of a section, rad, in modes of pure rotation."""
 
 ARM = 0.25
-"""Length of the lines that show how sections turn, relative to the scene's extent."""
+"""Length of the lines that show rotations of sections, relative to the scene's extent."""
 
 STILL = 1e-6
-"""Displacement, relative to the extent, of a mode in which sections only turn."""
+"""Threshold of the displacement, relative to the extent, below which a mode counts as pure rotation."""
 
 COLUMNS = 4
 """Panels in a row."""
@@ -57,21 +57,21 @@ PERIOD_FRAMES = 50
 """Frames of one period of an animation."""
 
 BELOW = 0.2
-"""Room for the labels of the lowest panels, which reach out of the panels in space, inches."""
+"""Margin for the labels below the lowest panels in space, inches."""
 
 
 def plot_modes(modes: Modes) -> Any:
     """Figure of modes: one panel each with the equilibrium in grey and both ends of the swing.
 
-    Dots mark sections; where sections only turn, lines show their x axes. A panel shows the plane that holds
-    the mode, else space. All have one scale and one amplitude.
+    Dots mark sections; in modes of pure rotation lines show their x axes. A panel shows the plane of the mode if it is
+    planar, else space. All panels have the same scale and amplitude.
     """
     count = len(modes.modes)
     columns = max(1, min(COLUMNS, count))
     rows = max(1, ceil(count / columns))
     height = 3.5 * rows + 0.6 + BELOW
     figure = figure_class()(figsize=(3.6 * columns, height), layout="constrained")
-    # Labels of axes in space reach out of their panels.
+    # Labels of axes in space extend beyond their panels.
     figure.get_layout_engine().set(wspace=0.08, hspace=0.08, rect=(0.0, BELOW / height, 1.0, 1.0 - BELOW / height))
     add_title(figure, modes.model.scene.title)
     if not count:
@@ -87,13 +87,13 @@ def plot_modes(modes: Modes) -> Any:
 
 
 def mode_words(mode: Mode, index: int) -> str:
-    """Number, frequency and damping of a mode; the index begins with 0."""
+    """Text with number, frequency and damping of a mode; the index begins with 0."""
     if mode.eigenvalue == 0.0:
         return f"{index + 1}: {mode.words}"
     if not mode.oscillates:
         return f"{index + 1}: {mode.words}, {abs(mode.eigenvalue.real):.4g} 1/s"
     words = f"{index + 1}: {mode.frequency:.4g} Hz"
-    # What is left of rounding is no damping.
+    # Damping at the level of rounding is omitted.
     if abs(mode.damping_ratio) > REAL:
         words += f", ζ = {mode.damping_ratio:.3g}"
     return words
@@ -102,18 +102,18 @@ def mode_words(mode: Mode, index: int) -> str:
 def animate_mode(
     modes: Modes, file: str | Path, *, mode: int = 1, progress: Callable[[float], None] | None = None
 ) -> None:
-    """Draw one period of a mode into a file, whole or not at all; a GIF repeats it.
+    """Draw one period of a mode into a file, atomically; a GIF repeats it.
 
     Args:
-        modes: of a scene.
-        file: its suffix is one of FORMATS of :mod:`cosserat_casadi.plots.animation`.
+        modes: modes of a scene.
+        file: path with a suffix of FORMATS of :mod:`cosserat_casadi.plots.animation`.
         mode: number of the mode, from 1.
-        progress: receives the share of the frames that are drawn.
+        progress: called with the share of drawn frames, 0 to 1.
 
     Raises:
-        SceneError: the suffix is none of FORMATS, or there is no such mode.
+        SceneError: the suffix is none of FORMATS, or the mode does not exist.
         AnimationUnavailableError: it is MP4, and ffmpeg is not installed.
-        WriteError: the file cannot be written, as on a full disk.
+        WriteError: the file cannot be written, e.g. on a full disk.
     """
     count = len(modes.modes)
     if not 1 <= mode <= count:
@@ -122,7 +122,7 @@ def animate_mode(
     shown = modes.modes[index]
     drawn = _mode_lines(modes)[index]
     phases = 2 * np.pi * np.arange(PERIOD_FRAMES) / PERIOD_FRAMES
-    # From the equilibrium on, so that the first picture is known.
+    # The period starts at the equilibrium.
     swing = drawn.amplitude * np.imag(np.exp(1j * phases)[:, None] * shown.vector)
     frames = AnimationFrames(
         model=modes.model,
@@ -141,11 +141,11 @@ class _ModeLines:
     """Centre lines of all rods in one mode, world axes.
 
     Attributes:
-        equilibrium: by rod, shape (len(SECTIONS), 3), m.
-        ends: by rod, at both ends of the swing, shape (2, len(SECTIONS), 3), m.
-        arms: by rod, ends of the lines that show how sections turn in the equilibrium and at one end of the swing,
-            shape (2, sections, 2, 3), m; empty where sections do not only turn.
-        amplitude: factor on the mode.
+        equilibrium: positions by rod in the equilibrium, shape (len(SECTIONS), 3), m.
+        ends: positions by rod at both extremes of the oscillation, shape (2, len(SECTIONS), 3), m.
+        arms: by rod, ends of the lines that show rotations of sections, in the equilibrium and at one extreme, shape
+            (2, sections, 2, 3), m; empty except for modes of pure rotation.
+        amplitude: scale factor of the mode.
         size: largest extent of the scene, m.
     """
 
@@ -163,12 +163,12 @@ class _ModeLines:
 
     @property
     def view(self) -> View:
-        """The plane that holds all points, or space, where arms show how sections turn."""
+        """The plane of all points, or space if there are arms."""
         return (None, WORLD) if self.arms else view_of(self.points, STILL * self.size)
 
 
 def _mode_lines(modes: Modes) -> list[_ModeLines]:
-    """Lines that are drawn of each mode."""
+    """Lines of each mode."""
     names = list(modes.model.discrete.rods)
     poses = {name: modes.solution.pose(SECTIONS, name) for name in names}
     shapes = {name: modes.shape(SECTIONS, name) for name in names}
@@ -183,7 +183,7 @@ def _mode_lines(modes: Modes) -> list[_ModeLines]:
         if largest > STILL * size:
             amplitude = SHARE * size / largest
         else:
-            # The largest rotation of the mode is one.
+            # The largest rotation angle of the mode is scaled to one.
             amplitude = TURNED
             for name, pose in poses.items():
                 turn = amplitude * np.real(shapes[name].rotation[index])

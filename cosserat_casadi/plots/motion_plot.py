@@ -25,55 +25,55 @@ from cosserat_casadi.plots.scenery import draw_supports
 from cosserat_casadi.results.facts import told_error
 
 SHAPES = 12
-"""Shapes that are drawn of a motion, evenly spaced in time, both ends among them."""
+"""Number of drawn shapes of a motion, evenly spaced in time from start to end."""
 
 PALEST = 0.18
-"""Share of its colour that the first shape has; the last has all of it."""
+"""Colour strength of the first shape; the last shape has strength 1."""
 
 TIME_MAP = "viridis_r"
-"""Colours of time along a path: light at the start, dark at the end, and apart for colour-blind readers."""
+"""Colour map of time along a path: light at the start, dark at the end, also for colour-blind readers."""
 
 LIGHTEST = 0.12
-"""Share of that map that is left out at its light end, which white paper swallows."""
+"""Omitted share of that map at its light end, which is invisible on white."""
 
 TICKS = 6
 """Most intervals between the ticks of an axis in space."""
 
 COLUMN_SPACE = 0.06
-"""Room between the columns, over their width: the layout does not see the labels of axes in space."""
+"""Space between the columns, over their width: the layout ignores labels of axes in space."""
 
 STROKES = ("-", "--", ":")
-"""Strokes of the curves of a panel, each used for all colours before the next."""
+"""Line styles of the curves of a panel; the style changes after all colours are used."""
 
 LEGEND_ROWS = 8
-"""Entries of a legend beside a panel, in one column."""
+"""Largest number of entries in one column of a legend."""
 
 MOST_NAMED = 2 * LEGEND_ROWS
-"""Curves of a panel that are all named; of more, as of coefficients of a wave, one column names the most varying."""
+"""Largest number of curves that are all in the legend; beyond it one column lists the most varying curves."""
 
 REST = "0.6"
-"""Grey of curves that are not named."""
+"""Grey of curves without a legend entry."""
 
 NOTHING = 1e-12
-"""Share of the largest value below which a curve counts as zero."""
+"""Threshold of zero curves, relative to the largest value."""
 
 
 ROUNDING = 1e-16
-"""Imbalance below which the axis of the imbalance does not go: a motion that has not begun has none."""
+"""Lower limit of the axis of the imbalance, for motions without imbalance."""
 
 
 def plot_motion(motion: Motion) -> Any:
     """Figure of a motion.
 
-    Left the rods at SHAPES times, early pale and late strong, with the outlines of bodies; in the plane where all of
-    the motion lies in one. The paths of tips and bodies are coloured by time, their ends marked. Right, over time: the
-    inputs that move, one panel a field and unit; the energies; the imbalance between them.
+    Left: the rods at SHAPES times, with colours stronger later, and the outlines of bodies; a planar motion is drawn in
+    its plane. Paths of tips and bodies are coloured by time, their ends are marked. Right, over time: the varying
+    inputs, one panel per field and unit; the energies; the energy imbalance.
     """
     moving = _moving_inputs(motion)
     panel_count = len(moving) + 2
     figure = figure_class()(figsize=(13.5, max(6.8, 1.9 * panel_count)), layout="constrained")
     add_title(figure, motion.model.scene.title)
-    # A motion that was not started has nothing to show but why.
+    # The figure of a motion without states has only the message.
     if len(motion.times) == 0:
         figure.text(0.5, 0.5, motion.message, color=FAILURE, ha="center", wrap=True)
         return figure
@@ -88,24 +88,24 @@ def plot_motion(motion: Motion) -> Any:
     canvas.axes.locator_params(nbins=TICKS)
     canvas.equalise(shapes.points)
     add_subtitle(canvas.axes, _subtitle(motion), good=motion.converged and motion.within_tolerance is not False)
-    # Below the axes, where it covers no shape.
+    # The legend is below the axes, where it covers no shape.
     figure.legend(*canvas.axes.get_legend_handles_labels(), loc="outside lower left", ncols=4, fontsize=9)
 
     panels = [figure.add_subplot(grid[row, 1]) for row in range(panel_count)]
-    # The panels of the energies and of their imbalance come last.
+    # The last panels show the energies and the imbalance.
     for panel, (quantity, curves) in zip(panels[:-2], moving.items(), strict=True):
         _draw_curves(panel, motion.times, curves)
         panel.set_ylabel(quantity)
     energies = {field.name: getattr(motion.energy, field.name) for field in fields(motion.energy)}
     del energies["imbalance"]
-    # Those that are not zero throughout.
+    # Energies that are not identically zero.
     least = NOTHING * max(np.abs(values).max() for values in energies.values())
     energies = {name: values for name, values in energies.items() if np.abs(values).max() > least}
     _draw_curves(panels[-2], motion.times, energies)
     panels[-2].set_ylabel("energy, J")
     _draw_imbalance(panels[-1], motion)
     first, last = motion.times[[0, -1]]
-    # A motion that stopped at its start has one time, and limits need two.
+    # Limits need two different times; a motion that failed at its start has one.
     margin = 0.02 * (last - first) or 1.0
     for panel in panels:
         panel.set_xlim(first - margin, last + margin)
@@ -116,7 +116,7 @@ def plot_motion(motion: Motion) -> Any:
 
 
 def _draw_shapes(canvas: Canvas, motion: Motion, shapes: MovingShapes) -> None:
-    """Draw rods and bodies at a few times, and where the rods begin and are held."""
+    """Draw rods and bodies at a few times, with the marks of clamps and joints."""
     rows = shown_rows(motion.times)
     for order, row in enumerate(rows):
         share = _share_of_colour(order, len(rows))
@@ -139,7 +139,7 @@ def _draw_shapes(canvas: Canvas, motion: Motion, shapes: MovingShapes) -> None:
 
 
 def _draw_obstacles(canvas: Canvas, motion: Motion, shapes: MovingShapes, rows: list[int]) -> None:
-    """Draw obstacles, those on bodies in each of the shapes that are drawn."""
+    """Draw obstacles; obstacles on bodies in each drawn shape."""
     obstacles = motion.model.scene.obstacles
     draw_surfaces(canvas, [one for one in obstacles if one.body is None], shapes.points, {})
     moving = [one for one in obstacles if one.body is not None]
@@ -154,7 +154,7 @@ def _draw_obstacles(canvas: Canvas, motion: Motion, shapes: MovingShapes, rows: 
 
 
 def _mark_contacts(canvas: Canvas, motion: Motion, rows: list[int]) -> None:
-    """Mark where obstacles without a width are touched in the shapes that are drawn."""
+    """Mark contacts with obstacles without a width in the drawn shapes."""
     for row in rows:
         for contact in motion.contacts[row] if motion.contacts else ():
             point = _touching_point(motion, contact, row)
@@ -162,7 +162,7 @@ def _mark_contacts(canvas: Canvas, motion: Motion, rows: list[int]) -> None:
 
 
 def _touching_point(motion: Motion, contact: MotionContact, row: int) -> FloatArray:
-    """Centre of the section that touches, or where the ball of a body does, shape (1, 3), m."""
+    """Centre of the touching section, or contact point of the ball of a body, shape (1, 3), m."""
     if not contact.of_body:
         section: FloatArray = motion.section(contact.owner, [contact.at]).position[row]
         return section
@@ -173,20 +173,20 @@ def _touching_point(motion: Motion, contact: MotionContact, row: int) -> FloatAr
 
 
 def shown_rows(times: FloatArray) -> list[int]:
-    """Rows of the shapes that are drawn: those next to times that are evenly spaced over the motion."""
+    """Rows of the drawn shapes: the nearest ones to evenly spaced times."""
     wanted = np.linspace(times[0], times[-1], SHAPES)
     nearest = np.abs(times - wanted[:, None]).argmin(axis=1)
     return sorted(set(nearest.tolist()))
 
 
 def _share_of_colour(order: int, count: int) -> float:
-    """How much of its colour a shape keeps, the first of which has the order 0: the last one all of it."""
-    # The quotient comes first: the last share is then exactly one, and rounding leaves no component below zero.
+    """Colour strength of a shape by its order, 0 for the first shape; 1 for the last shape."""
+    # With the quotient first the last share is exactly one, and no component becomes negative by rounding.
     return PALEST + (1 - PALEST) * ((order + 1) / count)
 
 
 def _faded(colour: str, share: float) -> tuple[float, float, float]:
-    """A colour mixed with white, of which it keeps this share; not transparent, so that crossings do not darken."""
+    """Mixture of a colour, with this share, and white; it is opaque, so that crossings do not darken."""
     from matplotlib.colors import to_rgb
 
     red, green, blue = (1 - share * (1 - component) for component in to_rgb(colour))
@@ -194,7 +194,7 @@ def _faded(colour: str, share: float) -> tuple[float, float, float]:
 
 
 def _draw_paths(figure: Any, canvas: Canvas, shapes: MovingShapes) -> None:
-    """Draw the paths of tips and bodies, coloured by time, with their ends marked."""
+    """Draw the paths of tips and bodies, coloured by time, with marked ends."""
     style = {
         "cmap": _time_colours(),
         "linewidths": 2.2,
@@ -231,7 +231,7 @@ def _subtitle(motion: Motion) -> str:
 
 
 def _moving_inputs(motion: Motion) -> dict[str, dict[str, FloatArray]]:
-    """Numbers of the inputs that change, by the words of an axis, such as "force, N", and by column, shape (T,)."""
+    """Varying inputs by axis label, such as "force, N", and by column, each of shape (T,)."""
     moving: dict[str, dict[str, FloatArray]] = {}
     if len(motion.times) == 0:
         return moving
@@ -240,7 +240,7 @@ def _moving_inputs(motion: Motion) -> dict[str, dict[str, FloatArray]]:
     for column, index in column_indices(layout).items():
         values = motion.inputs[:, index]
         if np.ptp(values) > NOTHING * np.abs(values).max():
-            # Forces and tensions have one unit, and seldom one size: they share no axis.
+            # Forces and tensions have separate axes: same unit, but seldom the same magnitude.
             entry = entries[index]
             axis = entry.field if entry.unit == "1" else f"{entry.field}, {entry.unit}"
             moving.setdefault(axis, {})[column] = values
@@ -266,12 +266,12 @@ def _draw_curves(panel: Any, times: FloatArray, curves: dict[str, FloatArray]) -
         _say(panel, "zero")
         return
     columns = -(-len(named) // LEGEND_ROWS)
-    # Beside the panel: inside it would cover a curve sooner or later.
+    # The legend is beside the panel, where it covers no curve.
     panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), ncols=columns, fontsize=9, frameon=False)
 
 
 def _draw_imbalance(panel: Any, motion: Motion) -> None:
-    """Draw the magnitude of the imbalance by powers of ten: a line where it is not zero, a point at a single time."""
+    """Draw the magnitude of the imbalance on a logarithmic axis: a line where nonzero, a dot for an isolated value."""
     panel.grid(alpha=0.3)
     panel.set_ylabel("imbalance /\nlargest energy")
     magnitude = np.abs(motion.energy.imbalance)
@@ -284,7 +284,7 @@ def _draw_imbalance(panel: Any, motion: Motion) -> None:
     lowest, highest = panel.get_ylim()
     lowest = ROUNDING if lowest < ROUNDING < highest else lowest
     if highest < 10 * lowest:
-        # Within a power of ten numbers such as 1.3 × 10⁻¹³ would stand between the powers.
+        # Ranges within one power of ten would get tick labels such as 1.3 × 10⁻¹³.
         lowest, highest = 10.0 ** np.floor(np.log10([lowest, 10 * highest]))
     panel.set_ylim(lowest, highest)
 

@@ -1,4 +1,4 @@
-"""Where the rods, bodies and disks of a motion lie over time: what its figure and its animation are drawn from."""
+"""Shapes of the rods, bodies and disks of a motion over time, for its figure and its animation."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from cosserat_casadi.plots.scene_view import View, view_of
 from cosserat_casadi.plots.scenery import base_style, body_outline, disk_rim, joint_style
 
 SECTIONS = np.linspace(0.0, 1.0, 101)
-"""Abscissae at which rods are drawn."""
+"""Abscissae of the drawn points of rods."""
 
 
 @dataclass(frozen=True)
@@ -28,13 +28,13 @@ class MovingShapes:
     """Lines in world axes at T times.
 
     Attributes:
-        times: shape (T,), s.
+        times: times, shape (T,), s.
         rods: centre lines at SECTIONS, by rod, shape (T, len(SECTIONS), 3), m.
-        outlines: closed outlines of bodies, and rims of disks, by what a legend calls them, shape (T, k, 3), m.
-        colours: of the outlines, by the same words.
+        outlines: closed outlines of bodies, and rims of disks, by legend label, shape (T, k, 3), m.
+        colours: colours of the outlines, by the same labels.
         courses: courses of cables and chambers by actuator, shape (T, k, 3), m.
-        followed: points whose paths are drawn, by the name of their rod or body, shape (T, 3), m.
-        marks: of joints and clamps: style of the marker, and its place, shape (T, 1, 3), m.
+        followed: points with drawn paths, by the name of their rod or body, shape (T, 3), m.
+        marks: style and position, shape (T, 1, 3), m, of the markers of joints and clamps.
     """
 
     times: FloatArray
@@ -58,7 +58,7 @@ class MovingShapes:
         return float(extents.max())
 
     def outline_style(self, name: str) -> dict[str, Any]:
-        """Style of an outline: its colour; a body without extent is a dot."""
+        """Style of an outline by its label; a body without extent is a dot."""
         style: dict[str, Any] = {"color": self.colours[name]}
         if np.ptp(self.outlines[name][0], axis=0).max() <= FLAT * self.size:
             style |= {"marker": "o", "markersize": 7}
@@ -66,18 +66,18 @@ class MovingShapes:
 
     @property
     def view(self) -> View:
-        """The plane that holds the whole motion, or space."""
+        """The plane of a planar motion, or space."""
         return view_of(self.points, FLAT * self.size)
 
 
 def moving_shapes(model: Model, times: FloatArray, x: FloatArray, inputs: FloatArray) -> MovingShapes:
-    """Lines of all rods, bodies and disks.
+    """Lines of all rods, bodies, disks and actuators over time.
 
     Args:
         model: the model.
-        times: shape (T,), s; at least one.
-        x: unknowns there, shape (T, model.size).
-        inputs: stacked inputs there, shape (T, model.inputs.size).
+        times: times, shape (T,), s; at least one.
+        x: unknowns at the times, shape (T, model.size).
+        inputs: stacked inputs at the times, shape (T, model.inputs.size).
     """
     rods = {name: section_poses(model, name, SECTIONS, x, inputs).position for name in model.discrete.rods}
     outlines = {}
@@ -96,7 +96,7 @@ def moving_shapes(model: Model, times: FloatArray, x: FloatArray, inputs: FloatA
         for disk in range(len(row.places)):
             world_R_section = rotations(sections.quaternion[:, disk])
             rim = np.einsum("tij,kj->tki", world_R_section, disk_rim(row))
-            # A legend leaves out what begins with an underscore: it names a row once.
+            # Labels that begin with an underscore are not in the legend, which has one entry for each row of disks.
             name = f"_{number}_{disk}" if disk else row.name or "disks"
             colours[name] = disk_colour(number)
             outlines[name] = sections.position[:, disk, None, :] + rim
@@ -113,16 +113,16 @@ def moving_shapes(model: Model, times: FloatArray, x: FloatArray, inputs: FloatA
 
 
 def _followed(model: Model, rods: dict[str, FloatArray]) -> dict[str, FloatArray]:
-    """The point of each rod whose path is drawn."""
+    """Drawn path of each rod, shape (T, 3), m: of its tip, or of its middle if the tip is held."""
     followed = {}
     carrying = {joint.rod for joint in model.scene.joints if joint.at == 1.0}
     held = {support.rod for support in model.scene.supports}
     for name, lines in rods.items():
         if name in held:
-            # The tip rests; the middle does not.
+            # A held tip is fixed; the middle moves.
             followed[name] = lines[:, len(SECTIONS) // 2]
         elif name not in carrying:
-            # The tips of rods that carry a body go where the body goes, whose own path says it once.
+            # Tips of rods that carry a body follow the path of the body, which is drawn once.
             followed[name] = lines[:, -1]
     return followed
 
@@ -133,7 +133,7 @@ def _marks(
     """Style and place of the marks of clamps, and of joints of bodies that are no disks."""
     unloaded = model.discrete.unloaded
     for rod in model.scene.rods:
-        # A rod that nothing holds has no mark.
+        # A free rod has no mark.
         if not rod.base.free:
             yield base_style(unloaded, rod.name), rods[rod.name][:, :1]
     disks = {body.name for body in model.scene.bodies if body.thickness is not None}

@@ -1,4 +1,4 @@
-"""Obstacles of a solved scene: cut by the plane that is shown, or as a net in space; and where rods touch them."""
+"""Obstacles of a solved scene, as a cut by the plane of the picture or as a net in space, and their contacts."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from cosserat_casadi.plots.solved_shapes import RodShapes
 from cosserat_casadi.scene import ObstacleRecord
 
 RESOLUTION = 161
-"""Points along each axis of a cut at which the distance is looked at."""
+"""Number of points along each axis of a cut at which the distance is evaluated."""
 
 MARGIN = 0.12
-"""Margin of an obstacle that is shown beyond the rods, relative to the scene."""
+"""Margin around the rods in which obstacles are drawn, relative to the size of the scene."""
 
 
 def draw_obstacles(canvas: Canvas, solution: Solution, shapes: RodShapes) -> None:
-    """Draw all obstacles, those on bodies where these are, and mark the contacts."""
+    """Draw all obstacles, in the poses of their bodies, and mark the contacts."""
     scene = solution.model.scene
     bodies = {body.name: solution.body(body.name) for body in scene.bodies}
     draw_surfaces(canvas, scene.obstacles, shapes.points, bodies)
@@ -41,15 +41,15 @@ def draw_surfaces(
     strength: float = 1.0,
     named: bool = True,
 ) -> None:
-    """Draw obstacles about points that are shown.
+    """Draw obstacles near the displayed points.
 
     Args:
-        canvas: where to draw.
-        obstacles: what to draw.
-        points: points that are shown, world axes, shape (k, 3), m.
-        bodies: poses of the bodies that obstacles are fixed to, by name.
-        strength: share of its colour that an obstacle has.
-        named: whether the legend names them; it names no obstacle that is far from the points.
+        canvas: canvas.
+        obstacles: obstacles.
+        points: displayed points, world axes, shape (k, 3), m.
+        bodies: poses of bodies with obstacles, by name.
+        strength: colour strength, 0 to 1.
+        named: whether obstacles near the points get legend entries.
     """
     for obstacle in obstacles:
         body = None if obstacle.body is None else bodies[obstacle.body]
@@ -64,7 +64,7 @@ def draw_surfaces(
 
 
 def surface_net(obstacle: ObstacleRecord, points: FloatArray, size: float, body: SolvedPoses | None) -> FloatArray:
-    """Points of the surface of an obstacle about points that are shown, world axes, shape (m, n, 3), m."""
+    """Points of the surface of an obstacle near the displayed points, world axes, shape (m, n, 3), m."""
     member = SURFACES[obstacle.kind]
     near = points.mean(axis=0)
     if body is None:
@@ -76,9 +76,9 @@ def surface_net(obstacle: ObstacleRecord, points: FloatArray, size: float, body:
 def _draw_cut(
     canvas: Canvas, obstacle: ObstacleRecord, shown: FloatArray, body: SolvedPoses | None, strength: float
 ) -> bool:
-    """Fill the part of the shown plane that lies inside an obstacle, about the rods; return whether there is one.
+    """Fill the region of the picture's plane inside an obstacle, near the rods; return whether it is nonempty.
 
-    Beside a straight rod axes of one scale show more than its surroundings: a table below it is looked for there.
+    Around a straight rod, axes with equal scales show a larger region, which is searched too, e.g. for a table below.
     """
     columns, rows, values = _cut(canvas, obstacle, _points_of_plane(canvas, shown), body)
     if not np.any(values < 0.0):
@@ -95,7 +95,7 @@ def _draw_cut(
 def surface_lines(
     canvas: Canvas, obstacle: ObstacleRecord, shown: FloatArray, body: SolvedPoses | None
 ) -> list[FloatArray]:
-    """Lines that show an obstacle, world axes, shape (k, 3) each, m: about a cut, or of a net in space."""
+    """Lines of an obstacle, world axes, each of shape (k, 3), m: outlines of its cut, or of its net in space."""
     if canvas.plane is None:
         mesh = surface_net(obstacle, shown, canvas.size, body)
         return [*mesh, *mesh.transpose(1, 0, 2)]
@@ -107,18 +107,18 @@ def surface_lines(
         line = np.tile(points[0, 0], (len(segment), 1))
         line[:, canvas.plane] = segment
         lines.append(line @ canvas.view_axes)
-    # Only its lines are wanted: they are moved from frame to frame.
+    # Only its lines are needed, for moving them between frames.
     drawn.remove()
     return lines
 
 
 def _points_of_plane(canvas: Canvas, shown: FloatArray, *, square: bool = False) -> FloatArray:
-    """Points of the plane that is shown about the rods, in the axes of the view, rows of points, m.
+    """Grid of points of the picture's plane near the rods, in the axes of the view, m.
 
     Args:
-        canvas: where to draw.
-        shown: points that are shown, world axes, shape (k, 3), m.
-        square: whether all sides are as long as the longest one.
+        canvas: canvas.
+        shown: displayed points, world axes, shape (k, 3), m.
+        square: whether all sides have the length of the longest side.
     """
     assert canvas.plane is not None, "asked for in a plane"
     coordinates = shown @ canvas.view_axes.T
@@ -141,7 +141,7 @@ def _points_of_plane(canvas: Canvas, shown: FloatArray, *, square: bool = False)
 def _cut(
     canvas: Canvas, obstacle: ObstacleRecord, points: FloatArray, body: SolvedPoses | None
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Coordinates to the right and upwards of points of a plane, and the distances of these from an obstacle, m."""
+    """Horizontal and vertical coordinates of points of a plane, and their distances to an obstacle, m."""
     assert canvas.plane is not None, "asked for in a plane"
     right, up = canvas.plane
     world = points.reshape(-1, 3) @ canvas.view_axes
@@ -151,7 +151,7 @@ def _cut(
 
 
 def _mark_contacts(canvas: Canvas, solution: Solution) -> None:
-    """Mark points of contact, and draw stretches that lie on an obstacle once more."""
+    """Mark points of contact, and highlight intervals of contact."""
     for contact in solution.contacts:
         if contact.of_body and contact.width is not None:
             continue

@@ -1,4 +1,4 @@
-"""The figure of a path: load against the displacement of the tips, for a held rod of a section between its ends.
+"""The figure of a path: load over displacement of the tips, or of an inner section of a rod with a held tip.
 
 matplotlib is an extra and is imported inside functions only.
 """
@@ -44,21 +44,21 @@ NEUTRAL = 2
 NOT_JUDGED = 3
 
 STYLES = (("-", "stable"), ("--", "unstable"), ("-.", "neutral"), ("-", "stability not judged"))
-"""Stroke and words of each stability, in the order above."""
+"""Line style and label of each stability, in the order above."""
 
 SMALLEST_DISPLACEMENT = 1e-9
-"""Displacement relative to the length below which a component is not drawn."""
+"""Threshold of drawn components: displacement over length."""
 
 
 SHOWN_SECONDS = 6.0
-"""Time in which a film goes along a path; a path of many points takes longer, s."""
+"""Duration of the film of a path, s; a path of many points takes longer."""
 
 COLUMNS = 3
-"""Most panels beside each other."""
+"""Largest number of panels in a row."""
 
 
 def plot_path(path: EquilibriumPath) -> Any:
-    """Figure of a path: one panel a rod, displacement over length to the right, factor upwards.
+    """Figure of a path: one panel per rod, load factor over displacement / length.
 
     Stable parts are solid, unstable dashed, neutral dash-dotted; events are marked.
     """
@@ -75,19 +75,19 @@ def plot_path(path: EquilibriumPath) -> Any:
 
 
 def animate_path(path: EquilibriumPath, file: str | Path, *, progress: Callable[[float], None] | None = None) -> None:
-    """Draw the equilibria of a path one after the other into a file, whole or not at all.
+    """Draw the equilibria of a path one by one into a film, written atomically.
 
-    A frame is a point of the path: nothing is interpolated. Of more than MOST_FRAMES points some are left out.
+    Each frame is a point of the path, without interpolation. More than MOST_FRAMES points are thinned.
 
     Args:
-        path: what to show.
-        file: its suffix is one of FORMATS of :mod:`cosserat_casadi.plots.animation`.
-        progress: receives the share of the frames that are drawn.
+        path: the path.
+        file: file name with a suffix of FORMATS of :mod:`cosserat_casadi.plots.animation`.
+        progress: called with the share of drawn frames, 0 to 1.
 
     Raises:
         SceneError: the suffix is none of FORMATS, or the path has no point.
         AnimationUnavailableError: it is MP4, and ffmpeg is not installed.
-        WriteError: the file cannot be written, as on a full disk.
+        WriteError: the file cannot be written, e.g. on a full disk.
     """
     shown = shown_points(len(path.factor))
     stability = _stability(path)[shown]
@@ -106,7 +106,7 @@ def animate_path(path: EquilibriumPath, file: str | Path, *, progress: Callable[
 
 
 def shown_points(count: int) -> npt.NDArray[np.int64]:
-    """Numbers of the points of a path that its film shows, at most MOST_FRAMES.
+    """Indices of the points of a path in its film, at most MOST_FRAMES.
 
     Raises:
         SceneError: the path has no point.
@@ -117,19 +117,19 @@ def shown_points(count: int) -> npt.NDArray[np.int64]:
 
 
 def path_interval(shown: npt.NDArray[np.int64]) -> float:
-    """Time from frame to frame of the film of a path, s."""
+    """Time per frame of the film of a path, s."""
     return max(1 / FRAME_RATE, SHOWN_SECONDS / len(shown))
 
 
 @dataclass(frozen=True)
 class _Section:
-    """The section of a rod whose displacement is drawn.
+    """Section of a rod with a drawn displacement.
 
     Attributes:
-        rod: its name.
-        X: its abscissa.
-        length: of the rod, m.
-        unloaded: its position in the unloaded rod, shape (3,), m.
+        rod: name of the rod.
+        X: abscissa of the section.
+        length: length of the rod, m.
+        unloaded: position of the section in the unloaded rod, shape (3,), m.
     """
 
     rod: str
@@ -143,7 +143,7 @@ class _Section:
         return "the tip" if self.X == 1.0 else f"the section at X = {self.X:.3g}"
 
     def displacement(self, positions: FloatArray) -> FloatArray:
-        """Displacement from the unloaded rod over the length, of the shape of the positions."""
+        """Displacement from the unloaded rod over the length, with the shape of the positions."""
         displacement = (positions - self.unloaded) / self.length
         return np.asarray(displacement)
 
@@ -160,7 +160,7 @@ def _followed_section(path: EquilibriumPath, name: str) -> _Section:
 def _draw_rod(axes: Any, path: EquilibriumPath, section: _Section) -> None:
     displacement = section.displacement(path.position(section.X, section.rod))
     stability = _stability(path)
-    # The components that move, or x where none does.
+    # The components with a displacement, or x without any.
     moving = np.flatnonzero(np.abs(displacement).max(axis=0, initial=0.0) > SMALLEST_DISPLACEMENT)
     for component in moving.tolist() or [0]:
         for start, stop, style in runs(stability):
@@ -169,7 +169,7 @@ def _draw_rod(axes: Any, path: EquilibriumPath, section: _Section) -> None:
             axes.plot(displacement[part, component], path.factor[part], color=AXES[component], linestyle=stroke)
         _mark_events(axes, path, section, component)
         axes.plot([], [], color=AXES[component], label=f"{AXIS_NAMES[component]} of {section.words}")
-    # Strokes are explained by empty lines in grey: each stands for all components.
+    # Empty grey lines explain the line styles in the legend, for all components.
     for style in sorted(set(stability.tolist())):
         stroke, words = STYLES[style]
         axes.plot([], [], color="0.3", linestyle=stroke, label=words)
@@ -177,12 +177,12 @@ def _draw_rod(axes: Any, path: EquilibriumPath, section: _Section) -> None:
     axes.set_xlabel(f"displacement of {section.words} / length")
     axes.set_ylabel(_way_words(path))
     axes.grid(alpha=0.3)
-    # Below the panel: inside it would cover a curve sooner or later.
+    # The legend is below the panel, where it covers no curve.
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3, fontsize=9, frameon=False)
 
 
 def _mark_events(axes: Any, path: EquilibriumPath, section: _Section, component: int) -> None:
-    """Mark every event by a point; the legend names each kind once."""
+    """Mark every event by a point; the legend has one entry for each kind."""
     labels = axes.get_legend_handles_labels()[1]
     for event in path.events:
         label = WORDS[event.kind]
@@ -191,7 +191,7 @@ def _mark_events(axes: Any, path: EquilibriumPath, section: _Section, component:
         style = {"marker": MARKERS[event.kind], "color": "0.1", "linestyle": "none", "markersize": 7, "zorder": 5}
         legend_label = label
         if label in labels:
-            # matplotlib leaves out of the legend what begins with an underscore.
+            # Matplotlib omits labels that begin with an underscore from the legend.
             legend_label = "_repeated"
         axes.plot(displacement[component], event.factor, label=legend_label, **style)
         labels.append(label)
@@ -201,10 +201,10 @@ def _stability(path: EquilibriumPath) -> FloatArray:
     """Index into STYLES of every point, shape (k,)."""
     if path.stable is None or path.neutral is None:
         return np.full(len(path.factor), NOT_JUDGED)
-    # Neutral before stable: a point that can be moved on at no cost is called stable too.
+    # Neutral is tested before stable: neutral points are flagged as stable too.
     judged = np.where(path.stable, STABLE, UNSTABLE)
     styles = np.where(path.neutral, NEUTRAL, judged)
-    # A point that lies on an event is neutral by itself; it is drawn as what leads to it.
+    # A point at an event is neutral; it is drawn in the style of the points before it.
     neutral = styles == NEUTRAL
     alone = 1 + np.flatnonzero(neutral[1:-1] & ~neutral[:-2] & ~neutral[2:])
     styles[alone] = styles[alone - 1]
@@ -212,7 +212,7 @@ def _stability(path: EquilibriumPath) -> FloatArray:
 
 
 def runs(styles: npt.NDArray[Any]) -> list[tuple[int, int, int]]:
-    """Pieces of one style as (start, stop, style); neighbours share a point, so that no gap shows."""
+    """Pieces of equal style as (start, stop, style); adjacent pieces share a point, without a gap."""
     cuts = [0, *(np.flatnonzero(np.diff(styles)) + 1).tolist(), len(styles)]
     pieces = pairwise(cuts)
     return [(start, min(stop + 1, len(styles)), int(styles[start])) for start, stop in pieces if stop > start]

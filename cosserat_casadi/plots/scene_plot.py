@@ -1,4 +1,4 @@
-"""The figure of a solved scene: the deformed rods with their loads, strain and internal wrench along X.
+"""The figure of a solved scene: deformed rods with loads, and strain and internal wrench along X.
 
 Strain, internal moment and internal force are in section axes. matplotlib is an extra and is imported inside functions
 only.
@@ -38,26 +38,26 @@ from cosserat_casadi.results.facts import told_error
 from cosserat_casadi.results.presentation import figure_of
 
 STROKES = ("-", "--", "-.")
-"""Strokes of the components x, y, z where colours tell the rods apart."""
+"""Line styles of the components x, y, z if colours denote rods."""
 
 ZERO = 1e-9
-"""Share of the largest component below which a component is not drawn."""
+"""Threshold of drawn components, over the largest component."""
 
 ROUNDING = 1e-12
-"""Share of the scale of its rod below which a component is rounding, where all components are."""
+"""Threshold of rounding of components, over the scale of the rod, if all components are below it."""
 
 LEVEL = 1e-3
-"""Share of its value below which the variation of a curve is taken for rounding."""
+"""Threshold of rounding of the variation of a curve, over its value."""
 
 
 @dataclass(frozen=True)
 class PanelQuantity:
-    """Quantity that a panel shows.
+    """Quantity of a panel.
 
     Attributes:
         name: strain, moment or force.
-        labels: of its components; beyond the third they are linear strains.
-        axis_label: with the unit.
+        labels: labels of its components; components after the third are linear strains.
+        axis_label: label of the axis, with the unit.
     """
 
     name: str
@@ -73,7 +73,7 @@ QUANTITIES = (
 
 
 def draw_panel(panel: Any, solution: Solution, quantity: PanelQuantity) -> None:
-    """Draw the components of a quantity that are not zero, of all rods."""
+    """Draw the nonzero components of a quantity of all rods."""
     rods = solution.model.discrete.rods
     values = {name: _values(solution, name, quantity.name) for name in rods}
     scales = {name: _scale(solution, name, quantity.name) for name in rods}
@@ -81,7 +81,7 @@ def draw_panel(panel: Any, solution: Solution, quantity: PanelQuantity) -> None:
     shown = [panel]
     linear_axes = panel
     if quantity.name == "strain" and any(np.any(of_rod[:, 3:]) for of_rod in values.values()):
-        # Shear and stretch have no unit and are small beside curvatures: an axis of their own, on the right.
+        # Shear and extension, dimensionless and small beside curvatures, have a separate axis on the right.
         linear_axes = panel.twinx()
         shown.append(linear_axes)
 
@@ -89,7 +89,7 @@ def draw_panel(panel: Any, solution: Solution, quantity: PanelQuantity) -> None:
     for index, (name, discrete_rod) in enumerate(rods.items()):
         for component, label in enumerate(quantity.labels):
             curve = values[name][:, component]
-            # A component that rounding alone has filled would take a colour and a line of the legend.
+            # A component of pure rounding would take a colour and a legend entry.
             rounding = max(ZERO * np.abs(values[name]).max(), ROUNDING * scales[name])
             if np.abs(curve).max() <= rounding:
                 continue
@@ -97,10 +97,11 @@ def draw_panel(panel: Any, solution: Solution, quantity: PanelQuantity) -> None:
             style = _curve_style(len(rods), index, component)
             axes.plot(SAMPLES, curve, label=label if len(rods) == 1 else None, **style)
             if len(rods) > 1 and label not in labelled:
-                # Strokes tell components and are named once, in grey; the picture beside names the rods.
+                # Line styles denote components, with one grey legend entry each; the legend of the picture names the
+                # rods.
                 axes.plot([], [], color="0.3", linestyle=style["linestyle"], label=label)
             labelled.add(label)
-        # Fields may jump where one element ends and the next begins.
+        # Fields may jump between elements.
         for element_end in discrete_rod.grid.known_places[1:-1]:
             panel.axvline(element_end, color="0.6", linewidth=0.8)
 
@@ -110,7 +111,7 @@ def draw_panel(panel: Any, solution: Solution, quantity: PanelQuantity) -> None:
 
 
 def _curve_style(rod_count: int, rod_index: int, component: int) -> dict[str, Any]:
-    """Colours tell the components of one rod, else the rods, as in the picture beside; strokes tell the rest."""
+    """Style of a curve: colours denote components for one rod, else rods; then line styles denote components."""
     style: dict[str, Any] = {"color": AXES[component % 3], "linestyle": "-"}
     if rod_count > 1:
         style |= {**rod_style(rod_index), "markersize": 4, "linestyle": STROKES[component % 3]}
@@ -120,15 +121,15 @@ def _curve_style(rod_count: int, rod_index: int, component: int) -> dict[str, An
 
 
 def _finish_panel(shown: list[Any]) -> None:
-    """Legend and limits of the axes of one panel, the one on the right last."""
+    """Set the legend and limits of the axes of one panel; the axis on the right is last."""
     handles = [handle for axes in shown for handle in axes.get_legend_handles_labels()[0]]
     if not handles:
         panel = shown[0]
         panel.text(0.5, 0.5, "zero", ha="center", va="center", color="0.5", transform=panel.transAxes)
         panel.set_yticks([])
         return
-    # Above the panel: inside it would cover a curve sooner or later.
-    # The power of ten of an axis stands in its corner.
+    # The legend is above the panel, where it covers no curve.
+    # The corner holds the power of ten of an axis.
     place = {"loc": "lower left", "bbox_to_anchor": (0.1, 1.0), "borderaxespad": 0.1}
     shown[-1].legend(handles=handles, fontsize=9, ncols=3, frameon=False, **place)
     for axes in shown:
@@ -138,7 +139,7 @@ def _finish_panel(shown: list[Any]) -> None:
 
 
 def _hide_rounding(axes: Any) -> None:
-    """Widen the limits about a constant, which is then a level line and not its rounding errors."""
+    """Widen the limits around a constant curve, so that rounding errors do not show."""
     low, high = axes.get_ylim()
     largest = max(abs(low), abs(high))
     if high - low >= LEVEL * largest:
@@ -149,7 +150,7 @@ def _hide_rounding(axes: Any) -> None:
 
 
 def _scale(solution: Solution, name: str, quantity: str) -> float:
-    """Scale of a quantity of a rod: a radian along it, 1/m; or force times length, N m; or moment over length, N."""
+    """Scale of a quantity of a rod: 1/length, 1/m; or force times length, N m; or moment over length, N."""
     length = solution.model.length(name, solution.inputs)
     if quantity == "strain":
         return float(1 / length)
@@ -159,10 +160,10 @@ def _scale(solution: Solution, name: str, quantity: str) -> float:
 
 
 def _values(solution: Solution, name: str, quantity: str) -> FloatArray:
-    """Components at SAMPLES, shape (len(SAMPLES), 6) for the strain, else (len(SAMPLES), 3)."""
+    """Components at SAMPLES, shape (len(SAMPLES), 6) for strains, else (len(SAMPLES), 3)."""
     if quantity == "strain":
         strain = solution.strain(SAMPLES, name)
-        # The stretch is 1 in the unloaded rod: what is left is the extension.
+        # Extension is stretch minus 1.
         strain[:, 5] -= 1.0
         return strain
     wrench = solution.internal_wrench(SAMPLES, name)
@@ -173,10 +174,9 @@ def _values(solution: Solution, name: str, quantity: str) -> FloatArray:
 def plot_solution(solution: Solution) -> Any:
     """Figure of a solution.
 
-    Left the rods in space, or in the plane that holds all of the scene: deformed thick, unloaded
-    dashed, section axes (x red, y green, z blue), tendons and chambers, bodies filled, joints, obstacles, loads and
-    forces of contact as arrows.
-    Right, along X: the strains that are admitted, the internal moment and the internal force in section axes.
+    Left: the rods in space, or in the plane of a planar scene: deformed thick, unloaded dashed; section axes (x red, y
+    green, z blue), tendons and chambers, filled bodies, joints, obstacles; arrows of loads and contact forces. Right,
+    along X: the admitted strains, the internal moment and the internal force in section axes.
     """
     figure = figure_class()(figsize=(13.0, 6.6), layout="constrained")
     grid = figure.add_gridspec(3, 2, width_ratios=(1.5, 1.0))
@@ -184,7 +184,7 @@ def plot_solution(solution: Solution) -> Any:
     arrows = scene_arrows(solution)
     canvas = add_canvas(figure, (grid[:, 0],), scene_view(shapes, arrows), shapes.size)
     _draw_scene(canvas, solution, shapes, arrows)
-    # Below the axes, where it covers no rod.
+    # The legend is below the axes, where it covers no rod.
     figure.legend(*canvas.axes.get_legend_handles_labels(), loc="outside lower left", ncols=5, fontsize=9)
 
     panels = [figure.add_subplot(grid[row, 1]) for row in range(len(QUANTITIES))]
@@ -213,7 +213,7 @@ def scene_arrows(solution: Solution) -> list[Arrow]:
 
 
 def plot_inverse(inverse: Inverse) -> Any:
-    """Figure of an inverse problem: the equilibrium at its inputs, with the targets."""
+    """Figure of an inverse problem: the equilibrium at the inputs found, with the targets."""
     return figure_of(inverse.solution)
 
 

@@ -23,16 +23,16 @@ from cosserat_casadi.plots.solved_shapes import SAMPLES, RodShapes, in_world
 from cosserat_casadi.scene import Body, Disks, Joint, Scene
 
 SLACK = 1e-6
-"""Tension below which a cable that may sag is called slack, in units of EI/ℓ²."""
+"""Threshold of the tension of slack cables, in units of EI/ℓ²."""
 
 AXES_SECTIONS = 9
-"""Most sections whose axes are drawn: the rods share them. Where there is not one for each end no axes are drawn."""
+"""Largest number of drawn section axes, shared among the rods; none are drawn with fewer than two per rod."""
 
 AXES_LENGTH = 0.06
-"""Length of the axes of sections that are drawn, over the scene."""
+"""Length of drawn section axes, over the size of the scene."""
 
 RIM = 33
-"""Points of the rim of a disk."""
+"""Number of points of the rim of a disk."""
 
 CLAMP: dict[str, Any] = {"color": "0.2", "marker": "s", "markersize": 9}
 
@@ -40,7 +40,7 @@ FIXED: dict[str, Any] = {"marker": "s", "markersize": 7, "color": "0.35"}
 HINGE: dict[str, Any] = {"marker": "o", "markersize": 7, "color": "0.35"}
 BALL: dict[str, Any] = {"marker": "o", "markersize": 8, "markerfacecolor": "white", "markeredgecolor": "0.2"}
 SLIDE: dict[str, Any] = {"marker": "D", "markersize": 6, "markerfacecolor": "white", "markeredgecolor": "0.2"}
-"""Marks of joints, by the directions that they hold; rods that start on rods without a joint are fixed there."""
+"""Markers of joints, by held directions; rods that start on rods without a joint have FIXED."""
 
 TARGET_STYLE: dict[str, Any] = {
     "marker": "+",
@@ -63,7 +63,7 @@ def draw_rods(canvas: Canvas, solution: Solution, shapes: RodShapes) -> None:
 
 
 def base_style(unloaded: UnloadedScene, rod: str) -> dict[str, Any]:
-    """Mark of a rod's base: of a joint there, of another rod, or of the clamp."""
+    """Marker of a rod's base: joint, start on another rod, or clamp."""
     for joint in unloaded.scene.joints:
         if joint.rod == rod and joint.holds_base:
             return joint_style(joint)
@@ -71,7 +71,7 @@ def base_style(unloaded: UnloadedScene, rod: str) -> dict[str, Any]:
 
 
 def _draw_section_axes(canvas: Canvas, solution: Solution, name: str, count: int) -> None:
-    """Draw the axes of this many sections of a rod, both ends among them; of one alone none."""
+    """Draw the axes of ``count`` sections of a rod, including both ends; with a count below two draw none."""
     if count < 2:
         return
     pose = solution.pose(np.linspace(0.0, 1.0, count), name)
@@ -84,7 +84,7 @@ def _draw_section_axes(canvas: Canvas, solution: Solution, name: str, count: int
 
 
 def draw_supports(canvas: Canvas, scene: Scene) -> None:
-    """Mark the points at which tips are held."""
+    """Mark the supports of tips."""
     for support in scene.supports:
         turns = not SUPPORT_KINDS[support.kind].directions(support).rotations.size
         marker = "^" if turns else "s"
@@ -94,7 +94,7 @@ def draw_supports(canvas: Canvas, scene: Scene) -> None:
 
 
 def draw_actuators(canvas: Canvas, solution: Solution) -> None:
-    """Draw the routing of every actuator, with its effort in the legend; one without a routing stands there alone."""
+    """Draw the routing of every actuator; the legend shows efforts, also of actuators without a routing."""
     for index, actuator in enumerate(solution.model.scene.actuators):
         colour = actuator_colour(index)
         label = _effort_label(solution, actuator)
@@ -105,7 +105,7 @@ def draw_actuators(canvas: Canvas, solution: Solution) -> None:
         drawn_as = EFFECTS[actuator.kind].drawn_as
         style = {**ACTUATOR_STYLES[drawn_as]}
         if drawn_as == "cable":
-            # Where the cable is fixed to its section.
+            # The point at which the cable is fixed to its section.
             canvas.markers(routing[-1:], marker="o", markersize=4, color=colour)
             if _is_limp(solution, actuator):
                 style["linestyle"] = ":"
@@ -122,7 +122,7 @@ def _effort_label(solution: Solution, actuator: Any) -> str:
 
 
 def _is_limp(solution: Solution, actuator: Any) -> bool:
-    """Whether an actuator pulls with nothing to speak of."""
+    """Whether an actuator is a cable with negligible tension."""
     effort = solution.actuator(actuator.name)[EFFECTS[actuator.kind].effort]
     smallest_taut = SLACK * solution.model.discrete.tension_unit(actuator.rod)
     return bool(effort <= smallest_taut)
@@ -132,27 +132,27 @@ ACTUATOR_STYLES: dict[str, dict[str, Any]] = {
     "cable": {"linewidth": 1.4, "linestyle": "-"},
     "channel": {"linewidth": 4.0, "alpha": 0.5},
 }
-"""How an actuator is drawn, by what its kind says of that."""
+"""Drawing styles of actuators, by the style of their kind."""
 
 
 def actuator_routing(solution: Solution, actuator: Any) -> FloatArray:
-    """Points of an actuator's routing in world axes, shape (len(SAMPLES), 3), m: r + R D."""
+    """Points r + R D of an actuator's routing in world axes, shape (len(SAMPLES), 3), m."""
     X = drawn_places(actuator, SAMPLES)
     pose = solution.pose(X, actuator.rod)
     offset = known(offset_at(actuator, X)[0])
-    # A routing is given by two offsets, along the axes x and y of its sections.
+    # Offsets of a routing are along the axes x and y of its sections.
     across = pose.rotation[:, :, :2]
     return np.asarray(pose.position + np.einsum("kij,jk->ki", across, offset))
 
 
 def draw_bodies(canvas: Canvas, solution: Solution) -> None:
-    """Draw every body as the polygon through its joints, or the line to its centre of mass from a joint alone."""
+    """Draw every body as the polygon through its joints, or as a line from its single joint to its centre of mass."""
     scene = solution.model.scene
     for body in scene.bodies:
         pose = solution.body(body.name)
         outline = in_world(pose, body_outline(scene, body))
         if body.thickness is not None:
-            # Disks of a row that are bodies for its contacts are drawn with their row.
+            # Disks of a row that are bodies, for contact, are drawn with their row.
             if body.listed:
                 canvas.line(outline, color=BODIES, linewidth=1.6, label=body.name)
             continue
@@ -164,7 +164,7 @@ def draw_bodies(canvas: Canvas, solution: Solution) -> None:
 
 
 def joint_style(joint: Joint) -> dict[str, Any]:
-    """Mark of a joint, by the directions that it holds."""
+    """Marker of a joint, by its held directions."""
     held = JOINT_KINDS[joint.kind].directions(joint)
     if held.slides:
         return SLIDE
@@ -174,12 +174,12 @@ def joint_style(joint: Joint) -> dict[str, Any]:
 
 
 def places_in(scene: Scene, body: str) -> FloatArray:
-    """Places of the joints of a body in its axes, shape (k, 3), m."""
+    """Positions of the joints of a body in its axes, shape (k, 3), m."""
     return np.array([place.position for joint in scene.joints for place in joint.places if place.body == body])
 
 
 def body_outline(scene: Scene, body: Body) -> FloatArray:
-    """Line that stands for a body, in its own axes, shape (k, 3), m: the rims of a disk, else a closed polygon."""
+    """Outline of a body in body axes, shape (k, 3), m: the rims of a disk, else a closed polygon."""
     if body.thickness is not None:
         return disk_rim(body)
     corners = body_corners(scene, body)
@@ -187,24 +187,24 @@ def body_outline(scene: Scene, body: Body) -> FloatArray:
 
 
 def body_corners(scene: Scene, body: Any) -> FloatArray:
-    """Corners of the polygon that stands for a body, in its own axes, shape (k, 3), m."""
+    """Corners of the polygon of a body in body axes, shape (k, 3), m."""
     points = places_in(scene, body.name)
     corners = points[_order_around_mean(points)]
-    # A body on one joint has no extent but that between the joint and its centre of mass.
+    # A body on one joint extends from the joint to its centre of mass.
     if len(corners) < 2:
         corners = np.concatenate([corners, np.array([body.centre_of_mass])])
     return corners
 
 
 def _order_around_mean(points: FloatArray) -> Indices:
-    """Order in which a polygon goes through points, shape (k, 3), without crossing itself.
+    """Order of points, shape (k, 3), for a polygon without self-intersection.
 
-    The angles about their mean are taken in the two directions in which the points spread most.
+    Points are ordered by angle about their mean, in the plane of their two principal directions.
     """
     arms = points - points.mean(axis=0)
-    # Fewer than three points have fewer than three singular vectors, unless the basis is completed.
+    # For fewer than three points the basis has to be completed.
     _, _, directions = np.linalg.svd(arms, full_matrices=len(points) < 3)
-    # Singular vectors come in the order of their spread, the largest first.
+    # Singular vectors are in descending order of their singular values.
     across = arms @ directions[0]
     up = arms @ directions[1]
     angles = np.arctan2(up, across)
@@ -212,7 +212,7 @@ def _order_around_mean(points: FloatArray) -> Indices:
 
 
 def draw_disks(canvas: Canvas, solution: Solution) -> None:
-    """Draw the rims of disks; the legend names a row once."""
+    """Draw the rims of disks; the legend has one entry for each row."""
     for index, row in enumerate(solution.model.scene.disks):
         for at in row.places:
             rim = in_world(solution.pose(at, row.rod), disk_rim(row))
@@ -220,7 +220,7 @@ def draw_disks(canvas: Canvas, solution: Solution) -> None:
 
 
 def disk_rim(row: Disks | Body) -> FloatArray:
-    """The rims of both faces of a disk in the axes of its section or body, one line, shape (k, 3), m."""
+    """The rims of both faces of a disk as one line, in the axes of its section or body, shape (k, 3), m."""
     assert row.radius is not None and row.thickness is not None, "a disk has both"
     angles = np.linspace(0.0, 2.0 * np.pi, RIM)
     around = row.radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -229,12 +229,12 @@ def disk_rim(row: Disks | Body) -> FloatArray:
 
 
 def draw_targets(canvas: Canvas, scene: Scene) -> None:
-    """Mark the points that an inverse problem wants to reach."""
+    """Mark the targets of an inverse problem."""
     points = target_points(scene)
     if points:
         canvas.markers(np.array(points), label="targets", **TARGET_STYLE)
 
 
 def target_points(scene: Scene) -> list[Sequence[float]]:
-    """Points of the targets of a scene, world axes, m."""
+    """Target points of a scene, world axes, m."""
     return [point for target in scene.targets for point in TARGET_KINDS[target.kind].points(target)]

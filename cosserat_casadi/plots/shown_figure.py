@@ -1,4 +1,4 @@
-"""The class of all figures: one of matplotlib's that a notebook shows, whether pyplot was imported or not."""
+"""The class of all figures: a matplotlib figure that notebooks display without pyplot."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ RESOLUTION = 72
 
 
 class ShownFigure(Figure):  # type: ignore[misc]  # matplotlib is not checked
-    """A figure whose picture a notebook shows as the value of a cell; matplotlib registers that with pyplot alone."""
+    """Figure that a notebook displays as the value of a cell; with matplotlib's class this needs pyplot."""
 
     def _repr_png_(self) -> bytes:
         content = io.BytesIO()

@@ -1,4 +1,4 @@
-"""Where the rods of a solution lie: what every part of its figure asks for."""
+"""Centre lines of the rods of a solution, for all parts of its figure."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from cosserat_casadi.equilibrium.solution import Solution, SolvedPoses
 from cosserat_casadi.maths.typing import FloatArray
 
 SAMPLES = np.linspace(0.0, 1.0, 201)
-"""Abscissae at which rods are drawn."""
+"""Abscissae of the drawn points of rods."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class RodShapes:
 def rod_shapes(solution: Solution) -> RodShapes:
     """Centre lines of all rods of a solution, deformed and unloaded."""
     model = solution.model
-    # A solution at the unloaded unknowns: poses are all that is asked of it.
+    # Solution at the unloaded unknowns; only its poses are used.
     unloaded = Solution(model, solution.inputs, model.unloaded(), solution.outcome, "", 0.0, 0)
     names = model.discrete.rods
     return RodShapes(

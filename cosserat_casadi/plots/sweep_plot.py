@@ -1,7 +1,7 @@
-"""The figures of a sweep: where the tip can be, coloured by an input, a result or the outcome; and Sobol indices.
+"""Figures of a sweep: positions of the tip, coloured by an input, a result or the outcome; and Sobol indices.
 
-These have a panel for each result that varies, with two bars and their intervals for each input. matplotlib is an extra
-and is imported inside functions only.
+The figure of Sobol indices has a panel for each varying result, with two bars and their intervals for each input.
+matplotlib is an extra and is imported inside functions only.
 """
 
 from __future__ import annotations
@@ -23,41 +23,41 @@ COLUMNS = 3
 """Panels in a row."""
 
 HEIGHT = 0.38
-"""Height of a bar, where inputs are 1 apart."""
+"""Height of a bar; inputs are at distance 1."""
 
 FLAT = 1e-6
-"""Share of the largest extent below which a set of points lies in a coordinate plane."""
+"""Threshold of the extent normal to a coordinate plane for planar points, over the largest extent."""
 
 MOST_POINTS = 40_000
-"""Points that are drawn; of more, every so many are left out."""
+"""Largest number of drawn points; more points are thinned."""
 
 RASTERISED = 5000
-"""Number of points from which on they are drawn as an image in a vector figure."""
+"""Least number of points that are drawn as an image in a vector figure."""
 
 DOT_AREA = 4e4
-"""Area of all dots together, points²; each takes its share within DOT_LIMITS."""
+"""Total area of all dots, points²; the area of a dot is limited to DOT_LIMITS."""
 
 DOT_LIMITS = (1.5, 16.0)
 
 MAP = "viridis"
 
 OUTCOME = "outcome"
-"""Colouring of a figure that no column colours."""
+"""Colour of the dots without a colour column."""
 
 
 def plot_sweep(sweep: Sweep, colour: str | None = None) -> Any:
-    """Figure of a sweep: one panel for points in a plane, else the points in space and their three projections.
+    """Figure of a sweep: one panel for planar points, else the points in space and their three projections.
 
-    Where rows have no result and two columns were swept, one more panel shows which of these they are.
+    With failed rows and two swept columns, a further panel shows the outcomes over both columns.
 
     Args:
-        sweep: results.
-        colour: column of the colour, or ``outcome``; by default the first swept column that varies.
+        sweep: results of the sweep.
+        colour: column for the colours, or ``outcome``; by default the first varying swept column.
 
     Raises:
-        KeyError: there is no such column.
+        KeyError: the column does not exist.
     """
-    # A column of one value would colour all points alike.
+    # A constant column would give all points the same colour.
     varying = [name for name in sweep.swept if np.ptp(sweep[name]) > 0]
     coloured_by = colour or (varying or [OUTCOME])[0]
     rows = _thinned(sweep.converged)
@@ -82,14 +82,14 @@ def plot_sweep(sweep: Sweep, colour: str | None = None) -> Any:
 
 
 Views = dict[tuple[int, int], Plane | None]
-"""The two world axes that a panel shows, by its row and column in the grid; None shows space."""
+"""The two world axes of each panel, by its row and column in the grid; None for space."""
 
 SPACE_VIEWS: Views = {(0, 0): (0, 1), (0, 1): None, (1, 0): (0, 2), (1, 1): (1, 2)}
-"""Panels from above and in space; below these, panels from the front and from the side."""
+"""Top row: views from above and in space; bottom row: views from the front and from the side."""
 
 
 def _figure(views: Views, show_inputs: bool) -> tuple[Any, Any]:
-    """A figure and its grid of panels, one column wider where inputs are shown."""
+    """A figure and its grid of panels, with a further column for inputs."""
     rows = max(row for row, _ in views) + 1
     columns = max(column for _, column in views) + 1 + show_inputs
     size = (5.4 * columns, 9.0) if rows > 1 else (6.4 * columns, 5.4)
@@ -103,20 +103,20 @@ def _add_view(figure: Any, cell: Any, plane: Plane | None) -> Any:
     right, up = plane
     panel = figure.add_subplot(cell)
     panel.set(xlabel=f"{AXIS_NAMES[right]}, m", ylabel=f"{AXIS_NAMES[up]}, m")
-    # Numbers such as 0.1425 need the room of two.
+    # Tick labels such as 0.1425 need the width of two ticks.
     panel.locator_params(axis="x", nbins=5)
     panel.grid(alpha=0.3)
     return panel
 
 
 def _scatter(panel: Any, points: FloatArray, plane: Plane | None, shades: FloatArray | None) -> Any:
-    """Dots of a panel, coloured by the shades or all alike.
+    """Draw the dots of a panel, coloured by shades or in a single colour.
 
     Args:
-        panel: the axes.
-        points: shape (k, 3), m.
-        plane: the axes that the panel shows of the points; None for space.
-        shades: shape (k,), or None.
+        panel: axes of the panel.
+        points: points, shape (k, 3), m.
+        plane: indices of the displayed axes; None for space.
+        shades: values for the colour map, shape (k,), or None.
     """
     share = DOT_AREA / max(len(points), 1)
     area = float(np.clip(share, *DOT_LIMITS))
@@ -137,13 +137,13 @@ def _scatter(panel: Any, points: FloatArray, plane: Plane | None, shades: FloatA
 
 
 def _draw_inputs(panel: Any, sweep: Sweep, right: str, up: str) -> None:
-    """Outcomes of the rows over two swept columns; every outcome has one colour and one marker."""
+    """Draw the outcomes of rows over two swept columns; each outcome has a colour and a marker."""
     for index, label in enumerate(LABELS):
         rows = _thinned(sweep.outcomes == index)
         if not rows.size:
             continue
         words = label.replace("_", " ")
-        # Later outcomes are drawn over converged rows: they are the few that are looked for.
+        # Failed rows are few and important: they are drawn over converged rows.
         style = {"s": 9.0, "linewidths": 0.0, "zorder": 2 + index, **category_style(index)}
         panel.scatter(sweep[right][rows], sweep[up][rows], label=words, **style)
     panel.set(xlabel=right, ylabel=up)
@@ -152,20 +152,20 @@ def _draw_inputs(panel: Any, sweep: Sweep, right: str, up: str) -> None:
 
 
 def _plane(points: FloatArray) -> Plane | None:
-    """The two axes of the coordinate plane that all points lie in; None where they fill space, or there are none."""
+    """The two axes of the coordinate plane of all points; None for points in space, or no points."""
     if not len(points):
         return None
     extents = np.ptp(points, axis=0)
     flat = np.flatnonzero(extents <= FLAT * extents.max())
     if not flat.size:
         return None
-    # Of points on a line two planes hold them all; the one across the last axis is shown.
+    # Collinear points lie in two planes; the plane normal to the last axis is drawn.
     right, up = np.delete(np.arange(3), flat[-1]).tolist()
     return right, up
 
 
 def _thinned(chosen: npt.NDArray[np.bool_]) -> npt.NDArray[np.int64]:
-    """Indices of the chosen rows; of more than MOST_POINTS every so many."""
+    """Indices of the chosen rows, thinned to at most MOST_POINTS."""
     rows = np.flatnonzero(chosen)
     stride = math.ceil(len(rows) / MOST_POINTS)
     return rows[:: max(1, stride)]
@@ -184,8 +184,8 @@ def plot_sobol(indices: SobolIndices, title: str | None = None) -> Any:
     """Figure of Sobol indices.
 
     Args:
-        indices: of the results; a result that does not vary is left out.
-        title: of the scene.
+        indices: Sobol indices of the results; constant results are left out.
+        title: title of the scene.
     """
     shown = {name: found for name, found in indices.results.items() if np.all(np.isfinite(found.first))}
     size = (3.4, 0.8 + 0.45 * len(indices.factors))
@@ -205,7 +205,7 @@ def _draw(panel: Any, name: str, found: Estimates, factors: tuple[str, ...]) -> 
         (found.total, found.total_interval, HEIGHT / 2, CATEGORIES[1], "total"),
     )
     for values, intervals, shift, colour, label in bars:
-        # A percentile may lie on the wrong side of an estimate by rounding.
+        # Rounding may put a percentile on the wrong side of its estimate.
         whiskers = np.maximum(np.vstack([values - intervals[:, 0], intervals[:, 1] - values]), 0.0)
         style = {"height": HEIGHT, "color": colour, "label": label, "error_kw": {"elinewidth": 1.0, "capsize": 2.0}}
         panel.barh(places + shift, values, xerr=whiskers, **style)

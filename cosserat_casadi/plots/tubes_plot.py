@@ -1,4 +1,4 @@
-"""Figures of concentric tubes: equilibria in space with the angles along them, a path with its snaps, its film.
+"""Figures of concentric tubes: equilibria in space, angles along them, a path with its snaps, and its film.
 
 matplotlib is an extra and is imported inside functions only.
 """
@@ -28,25 +28,25 @@ from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
 from cosserat_casadi.tubes.tube_solution import TubeSolution
 
 STROKES: dict[bool | None, str] = {True: "-", False: "--", None: "-"}
-"""Strokes of stable and unstable equilibria, and of equilibria under loads without energy."""
+"""Line styles of stable and unstable equilibria, and of equilibria under nonconservative loads."""
 
 VERDICTS: dict[bool | None, str] = {True: "stable", False: "unstable", None: "loads without energy"}
-"""Words for stable and unstable equilibria, and for equilibria under loads without energy."""
+"""Labels of stable and unstable equilibria, and of equilibria under nonconservative loads."""
 
 NANOMETRES = 9
-"""Digits of a distance in metres."""
+"""Decimal places of a distance in metres."""
 
 DRAWN = 12
-"""Points that are drawn from one station to the next."""
+"""Number of drawn points between adjacent stations."""
 
 WIDEST = 6.0
-"""Width of the innermost reach of the tubes, in points; a tube that ends leaves a thinner line."""
+"""Line width where all tubes overlap, points; a line is thinner beyond the end of each tube."""
 
 
 def plot_tubes(solution: TubeSolution | TubeEquilibria) -> Any:
-    """Figure of an equilibrium, or of all at the same inputs: left in space, right the angles along the centre line.
+    """Figure of an equilibrium, or of all at the same inputs: left the shape, right the angles along the centre line.
 
-    Where a tube ends the line gets thinner. Equilibria that are not stable are dashed.
+    The line is thinner beyond the end of each tube. Unstable equilibria are dashed.
     """
     solutions = [solution] if isinstance(solution, TubeSolution) else solution.solutions
     figure = figure_class()(figsize=(13.0, 6.6), layout="constrained")
@@ -58,7 +58,7 @@ def plot_tubes(solution: TubeSolution | TubeEquilibria) -> Any:
     for number, equilibrium in enumerate(solutions):
         _draw_robot(canvas, equilibrium, number, several=len(solutions) > 1)
         _draw_angles(panel, equilibrium, number, several=len(solutions) > 1)
-    # Loads that follow a tube turn with it: those of the first equilibrium are shown.
+    # Follower loads depend on the equilibrium: the figure shows the loads of the first one.
     draw_arrows(canvas, load_arrows(solutions[0]))
     draw_targets(canvas, solutions[0].model.scene)
     canvas.label_axes()
@@ -83,9 +83,9 @@ def _subtitle(solutions: Sequence[TubeSolution]) -> str:
 
 
 def _draw_robot(canvas: Canvas, solution: TubeSolution, number: int, *, several: bool) -> None:
-    """The centre line: of one equilibrium each tube has its colour, of several each equilibrium.
+    """Draw the centre line; colours denote tubes for one equilibrium, else equilibria.
 
-    The line is as thick as there are tubes in it.
+    The line width is proportional to the number of tubes.
     """
     if not several:
         _draw_nested(canvas, solution)
@@ -103,11 +103,11 @@ def _draw_robot(canvas: Canvas, solution: TubeSolution, number: int, *, several:
 
 
 def _draw_nested(canvas: Canvas, solution: TubeSolution) -> dict[int, Any]:
-    """Draw the tubes of an equilibrium, each over the tubes that enclose it and thinner; their lines by number."""
+    """Draw the tubes of an equilibrium, inner tubes over outer ones and thinner; returns their lines by index."""
     lines = {}
     reaches = solution.robot.translations(solution.inputs)
     stroke = STROKES[solution.stable]
-    # A tube that encloses another one ends before it.
+    # An outer tube ends before the inner one.
     for rank, index in enumerate(np.argsort(reaches, kind="stable").tolist()):
         line = _centre_line(solution, 0.0, float(reaches[index]))
         width = WIDEST * (len(reaches) - rank) / len(reaches)
@@ -117,7 +117,7 @@ def _draw_nested(canvas: Canvas, solution: TubeSolution) -> dict[int, Any]:
 
 
 def _centre_line(solution: TubeSolution, start: float, end: float) -> FloatArray:
-    """Points of the centre line from one distance to another, shape (k, 3), m."""
+    """Points of the centre line between two arc lengths, shape (k, 3), m."""
     shape = solution.shape
     stations = shape.distance[_between(shape.distance, start, end)]
     between = np.linspace(stations[:-1], stations[1:], DRAWN, axis=1).ravel()
@@ -126,14 +126,14 @@ def _centre_line(solution: TubeSolution, start: float, end: float) -> FloatArray
 
 
 def _between(distance: FloatArray, start: float, end: float) -> npt.NDArray[np.bool_]:
-    """Which stations lie from one distance to another, stations at both distances among them."""
-    # Distances are sums of steps: where a tube ends they are off by rounding.
+    """Mask of the stations between two arc lengths, both included."""
+    # Arc lengths are sums of steps: at the end of a tube they have rounding errors.
     slack = 1e-9 * float(distance.max())
     return (distance >= start - slack) & (distance <= end + slack)
 
 
 def _draw_angles(panel: Any, solution: TubeSolution, number: int, *, several: bool) -> None:
-    """Draw the angles of the tubes up to their tips, less the angle of the first drive."""
+    """Draw the angles of the tubes up to their tips, relative to the angle of the first drive."""
     shape = solution.shape
     first = solution.inputs[0]
     for index, name in enumerate(solution.robot.names):
@@ -145,10 +145,10 @@ def _draw_angles(panel: Any, solution: TubeSolution, number: int, *, several: bo
             colour = rod_colour(index)
             label = name
         style = {**category_style(index), "color": colour, "linestyle": STROKES[solution.stable], "markevery": 0.15}
-        # The steps are few: corners that no tube has would show between them. Some have no length but for rounding.
+        # The few steps need interpolation between them. Steps of zero length up to rounding are skipped.
         distance, rows = np.unique(np.round(shape.distance[here], NANOMETRES), return_index=True)
         angles = shape.angles[here, index][rows] - first
-        # A tube that does not leave the base plate has one station, and no curve.
+        # A tube that ends at the base plate has one station, and no curve.
         if len(distance) > 1:
             curve = PchipInterpolator(distance, angles)
             distance = np.linspace(distance[0], distance[-1], DRAWN * len(distance))
@@ -157,7 +157,7 @@ def _draw_angles(panel: Any, solution: TubeSolution, number: int, *, several: bo
 
 
 def plot_tube_path(path: TubePath) -> Any:
-    """Figure of a path: over the input, left the angles of the tips, right the energy; snaps as arrows."""
+    """Figure of a path over the input: left the angles of the tips, right the energy; arrows are snaps."""
     figure = figure_class()(figsize=(13.0, 5.6), layout="constrained")
     left, right = figure.subplots(1, 2)
     if path.solutions:
@@ -192,7 +192,7 @@ def plot_tube_path(path: TubePath) -> Any:
 def animate_tube_path(path: TubePath, file: str | Path, *, progress: Callable[[float], None] | None = None) -> None:
     """Draw the equilibria of a path as :func:`cosserat_casadi.plots.path_plot.animate_path` does.
 
-    A tube is dashed where they are unstable.
+    Tubes of unstable equilibria are dashed.
     """
     shown = shown_points(len(path.solutions))
     check_animation_path(file)
@@ -231,7 +231,7 @@ def _path_subtitle(path: TubePath) -> str:
 
 
 def _draw_curve(axes: Any, path: TubePath, heights: FloatArray, colour: str, label: str) -> None:
-    """A quantity along the path, dashed where it is unstable."""
+    """Draw a quantity along the path, dashed for unstable equilibria."""
     stable = path.stable
     if stable is None:
         axes.plot(path.values, heights, color=colour, label=label)
@@ -243,7 +243,7 @@ def _draw_curve(axes: Any, path: TubePath, heights: FloatArray, colour: str, lab
 
 
 def _draw_event(axes: Any, event: TubeEvent, height: float, landing: float | None) -> None:
-    """A mark at an event, and the snap from it as an arrow."""
+    """Draw a marker at an event, and the snap from it as an arrow."""
     axes.plot(event.value, height, marker="o", color="0.1", linestyle="none", markersize=6, zorder=5)
     if landing is not None:
         arrow = {"arrowstyle": "-|>", "color": "0.1", "mutation_scale": 14}

@@ -1,4 +1,4 @@
-"""Films as Universal Scene Description, text: meshes whose points have time samples."""
+"""Films as Universal Scene Description in text form: meshes with time samples of their points."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.plots.film import Film, FilmPart
 
 RATE = 100
-"""Time codes a second."""
+"""Time codes per second."""
 
 
 def usda(film: Film) -> str:
-    """A film as the content of a ``.usda`` file."""
+    """Content of the ``.usda`` file of a film."""
     names: set[str] = set()
     meshes = [_mesh(part, film, _identifier(part.name, names)) for part in film.parts]
     head = [
@@ -36,7 +36,7 @@ def usda(film: Film) -> str:
 
 
 def _identifier(name: str, taken: set[str]) -> str:
-    """A name that USD takes, other than those taken before; it joins them."""
+    """A valid USD name that is not in ``taken``; it is added to ``taken``."""
     base = re.sub(r"\W", "_", name, flags=re.ASCII)
     chosen, number = base, 1
     while chosen in taken:

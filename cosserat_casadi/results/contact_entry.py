@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 
 def contact_entry(model: Model, x: FloatArray, inputs: FloatArray) -> dict[str, Any]:
-    """Smooth contact as data: its kind, widths of obstacles and of contacts of rods, m, and depths, in widths.
+    """Smooth contact as plain data: kind, widths of obstacles and of contacts between rods, m, and depths in widths.
 
     Args:
-        model: of a scene with smooth obstacles.
+        model: model of a scene with smooth obstacles.
         x: unknowns, shape (k, model.size).
         inputs: stacked inputs, shape (k, model.inputs.size).
     """
@@ -32,7 +32,7 @@ def contact_entry(model: Model, x: FloatArray, inputs: FloatArray) -> dict[str, 
 
 
 def rubbing_entries(result: EquilibriumPath | Motion, rows: int) -> dict[str, Any]:
-    """The stretches of rods that stick or slip on obstacles, row after row; nothing in a scene without friction."""
+    """Entry of the intervals of rods that stick or slip on obstacles, row by row; empty in a scene without friction."""
     if not result.model.scene.rubs:
         return {}
     rubbing = [
@@ -51,7 +51,7 @@ def rubbing_entries(result: EquilibriumPath | Motion, rows: int) -> dict[str, An
 
 
 def place_entry(contact: Contact | PathContact) -> dict[str, Any]:
-    """Where a rod touches an obstacle; or which body does."""
+    """Place of a contact with an obstacle: interval of a rod, or body."""
     entry: dict[str, Any] = {"obstacle": contact.obstacle}
     if contact.of_body:
         return {**entry, "body": contact.owner}
@@ -59,7 +59,7 @@ def place_entry(contact: Contact | PathContact) -> dict[str, Any]:
 
 
 def point_forces(contact: Contact | PathContact) -> dict[str, Any]:
-    """Forces at the point or at both ends of a line, and those at sections inside it where there are any."""
+    """Forces at the point or at both ends of a line, and at sections inside it if there are any."""
     entry: dict[str, Any] = {"point_forces": contact.ends}
     if contact.inside:
         entry["inside_forces"] = [{"at": section.at, "force": section.force} for section in contact.inside]

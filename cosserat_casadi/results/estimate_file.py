@@ -48,7 +48,7 @@ def estimate_result(found: Estimate) -> dict[str, Any]:
 
 
 def _shared(found: Estimate) -> list[dict[str, Any]]:
-    """Numbers that all rows share; empty where no such number is unknown."""
+    """Unknowns common to all rows; empty if there are none."""
     shared = found.shared
     if shared is None:
         return []
@@ -57,7 +57,7 @@ def _shared(found: Estimate) -> list[dict[str, Any]]:
 
 
 def _second_best(found: Estimate, case: int) -> dict[str, Any]:
-    """The second best minimum of a row, where several searches were made for it."""
+    """The second best minimum of a row, if several searches were made for it."""
     if found.second is None:
         return {}
     second = found.second
@@ -65,10 +65,9 @@ def _second_best(found: Estimate, case: int) -> dict[str, Any]:
 
 
 def estimate_table(found: Estimate) -> tuple[list[str], list[list[Any]]]:
-    """Header and rows: where they are, how they ended, unknowns with deviations; NaN where not found.
+    """Header and rows: row, outcome, unknowns with standard deviations; NaN without an estimate.
 
-    Where several searches were made for a row: the share of the posterior mass that these values stand for, and the
-    second-best values.
+    After several searches for a row: also the share of the posterior mass of these values, and the second-best values.
     """
     pairs = [name for label in found.labels for name in (label, f"{label}.sigma")]
     numbers = np.stack([found.values, found.sigma], axis=2).reshape(len(found.cases), -1)

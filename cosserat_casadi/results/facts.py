@@ -31,26 +31,26 @@ if TYPE_CHECKING:
     from cosserat_casadi.tubes.tube_solution import TubeSolution
 
 Facts = list[tuple[str, str]]
-"""Labels with their words."""
+"""Pairs of label and text."""
 
 Titled = tuple[str | None, Facts]
-"""Title of the scene, None where it has none, and facts."""
+"""Title of the scene, or None, and facts."""
 
 MOST_OF_A_KIND = 4
-"""Tips, modes, unknowns or events that are listed; the rest is counted."""
+"""Largest number of listed tips, modes, unknowns or events; further ones are counted."""
 
 ROUNDING = 1e-14
-"""Share of the largest entry of a vector below which an entry is shown as zero."""
+"""Threshold of entries that are shown as zero, over the largest entry of their vector."""
 
 UNSOLVED = 1e-12
-"""Share of the size of a scene below which an entry is shown as zero: equations are not solved to less."""
+"""Threshold of entries that are shown as zero, over the size of the scene: the tolerance of the equations."""
 
 SMALLEST = 1e-300
-"""Keeps the scale of a vector of zeros away from zero."""
+"""Least scale of a vector, against division by zero."""
 
 
 def scene_facts(scene: Scene) -> Titled:
-    """Rods or tubes, what acts on them, and the inputs."""
+    """Rods or tubes, loads and actuators, and the inputs."""
     parts: dict[str, Sequence[Any]] = {
         "rods": scene.rods,
         "tubes": scene.tubes,
@@ -86,7 +86,7 @@ def tube_model_facts(model: TubeFunctions) -> Titled:
 
 
 def _arguments(model: Model | TubeFunctions) -> Facts:
-    """Names of inputs, and of parameters where the scene names some."""
+    """Names of inputs, and of parameters if the scene has any."""
     facts = [("inputs", _listed(model.inputs.names))]
     if model.parameters.size:
         facts.append(("parameters", _listed(model.parameters.names)))
@@ -104,7 +104,7 @@ def linear_model_facts(model: LinearModel) -> Titled:
 
 
 def choice_facts(choice: Choice) -> Titled:
-    """Largest error of a discretisation, the ranges that it was chosen for, and its modes."""
+    """Largest error of a discretisation, the input ranges of its choice, and its modes."""
     title, facts = model_facts(choice.model)
     of_choice = [
         ("largest error", _error(choice.error_estimate, choice.scene.accuracy.tolerance)),
@@ -171,7 +171,7 @@ def motion_facts(motion: Motion) -> Titled:
 
 
 def _rubbing(result: EquilibriumPath | Motion, rows: int) -> Facts:
-    """Stretches that stick or slip at the end; nothing in a scene without friction."""
+    """Intervals that stick or slip at the end; empty in a scene without friction."""
     if not rows or not result.model.scene.rubs:
         return []
     words = []
@@ -196,7 +196,7 @@ def modes_facts(modes: Modes) -> Titled:
 
 
 def inverse_facts(inverse: Inverse) -> Titled:
-    """Whether the targets are met, the gaps, and the inputs."""
+    """Outcome, gaps to the targets, and inputs."""
     title, facts = facts_of(inverse.solution)
     gaps = []
     for gap in inverse.gaps:
@@ -222,7 +222,7 @@ def identification_facts(found: Identification) -> Titled:
 
 
 def estimate_facts(found: Estimate) -> Titled:
-    """How many rows have an estimate, the median deviations of the unknowns, and the error."""
+    """Number of rows with an estimate, median deviations of the unknowns, and error."""
     facts = [("outcome", found.message)]
     values = np.where(found.found[:, None], found.sigma, np.nan)
     for label, unit, sigma in zip(found.labels[:MOST_OF_A_KIND], found.units, values.T, strict=False):
@@ -237,7 +237,7 @@ def estimate_facts(found: Estimate) -> Titled:
 
 
 def sweep_facts(sweep: Sweep) -> Titled:
-    """Rows by their outcome, columns, and the largest error of a sweep."""
+    """Number of rows by outcome, columns, and largest error of a sweep."""
     known, largest, row = sweep.worst
     facts = [
         ("rows", f"{len(sweep.values)}: {_listed(f'{count} {word}' for word, count in sweep.counts.items())}"),
@@ -251,7 +251,7 @@ def sweep_facts(sweep: Sweep) -> Titled:
 
 
 def sobol_facts(indices: SobolIndices) -> Titled:
-    """Draws, and the column with the largest total index of each result."""
+    """Number of draws, and the column with the largest total index for each result."""
     facts = [("draws", f"{indices.samples}, {indices.left_out} left out"), ("factors", _listed(indices.factors))]
     leading = []
     for name, estimates in indices.results.items():
@@ -289,13 +289,13 @@ def tube_path_facts(path: TubePath) -> Titled:
 
 
 def _outcome(converged: bool, label: str, message: str) -> str:
-    """The outcome in a word; where it is no success, the sentence that says why."""
+    """The outcome in a word; after a failure with its message."""
     words = label.replace("_", " ")
     return words if converged else f"{words}: {message}"
 
 
 def _error(error: float | None, tolerance: float | None) -> str:
-    """An estimated error in words, beside the tolerance where there is one."""
+    """An estimated error in words, with the tolerance if there is one."""
     within = None if error is None or tolerance is None else error <= tolerance
     return told_error(error, within, tolerance)
 
@@ -304,9 +304,9 @@ def told_error(error: float | None, within: bool | None, tolerance: float | None
     """An estimated error in words.
 
     Args:
-        error: relative to the length; None or no number where it is not estimated.
-        within: whether it is within the tolerance; None where no tolerance has a meaning.
-        tolerance: wanted error relative to the length; None where nobody wants one.
+        error: estimated error over the length; None or NaN without an estimate.
+        within: whether the error is within the tolerance; None if no tolerance applies.
+        tolerance: requested error over the length; None without a request.
     """
     if error is None or np.isnan(error):
         return "not estimated"
@@ -320,7 +320,7 @@ def told_error(error: float | None, within: bool | None, tolerance: float | None
 
 
 def _stable(stable: bool | None, eigenvalue: float | None) -> str:
-    """A verdict on stability, with the smallest eigenvalue of the second variation where it is known."""
+    """Stability in words, with the smallest eigenvalue of the second variation if known."""
     if stable is None:
         return "not judged"
     return _yes(stable) if eigenvalue is None else f"{_yes(stable)}, smallest eigenvalue {eigenvalue:.3g} EI/ℓ"
@@ -336,28 +336,29 @@ def _point(position: FloatArray) -> str:
 
 
 def digits(vector: FloatArray, size: float = 0.0) -> list[str]:
-    """Entries with six digits; an entry that is negligible beside the largest one is shown as zero.
+    """Entries with six digits; entries below the threshold are shown as zero.
 
     Args:
-        vector: any number of entries.
-        size: what such a quantity is counted in, such as a rod's length for positions; rounding of it is zero, too.
+        vector: vector of any length.
+        size: scale of the quantity, e.g. the length of a rod for positions; entries at its rounding are shown as zero
+            too.
     """
     magnitudes = np.abs(vector)
     largest = max(float(magnitudes.max()), SMALLEST)
-    # What is left of a cancellation would look like a result.
+    # A cancellation error would look like a result.
     rounded = np.where(magnitudes <= max(ROUNDING * largest, UNSOLVED * size), 0.0, vector)
     return [f"{entry:.6g}" for entry in rounded]
 
 
 def _numbers(values: FloatArray) -> str:
-    """Numbers with six digits; the rest of a long list is counted."""
+    """Numbers with six digits; in a long list further ones are counted."""
     shown = ", ".join(f"{value + 0.0:.6g}" for value in values[:MOST_OF_A_KIND])
     left_out = len(values) - MOST_OF_A_KIND
     return f"{shown} and {left_out} more" if left_out > 0 else shown
 
 
 def _listed(words: Iterable[str]) -> str:
-    """Words in a row; the rest of a long list is counted."""
+    """List of words; in a long list further ones are counted."""
     every = list(words)
     left_out = len(every) - MOST_OF_A_KIND
     shown = ", ".join(every[:MOST_OF_A_KIND]) or "none"
@@ -365,7 +366,7 @@ def _listed(words: Iterable[str]) -> str:
 
 
 def _first(noun: str, facts: Facts) -> Facts:
-    """The first of some facts, and how many there are in all where some are left out."""
+    """The first facts of a list, and its length if some are left out."""
     if len(facts) <= MOST_OF_A_KIND:
         return facts
     return [*facts[: MOST_OF_A_KIND - 1], (noun, f"{len(facts)} in all")]

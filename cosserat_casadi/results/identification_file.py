@@ -1,4 +1,4 @@
-"""The file of an identification: its numbers, how well they are known, and the misfit that remains."""
+"""The file of an identification: identified values, their uncertainty, and the remaining misfit."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from cosserat_casadi.identification.fit_unknowns import UnknownEntry, parts
 from cosserat_casadi.scene.values import names_in
 
 MOST_OUTLIERS = 100
-"""Outliers that the file names."""
+"""Largest number of outliers in the file."""
 
 
 def identification_result(found: Identification) -> dict[str, Any]:
-    """The end of an identification as the data of its file."""
+    """An identification as the data of its file."""
     starts, ended_here = found.starts
     return {
         "converged": found.converged,
@@ -53,7 +53,7 @@ def identification_result(found: Identification) -> dict[str, Any]:
 
 
 def _shared(found: Identification) -> dict[str, Any]:
-    """Unknowns that all cases share, by name: numbers, or lists of numbers."""
+    """Unknowns common to all cases, by name: numbers, or lists of numbers."""
     entries = {}
     first = 0
     intervals = found.intervals
@@ -67,7 +67,7 @@ def _shared(found: Identification) -> dict[str, Any]:
             "determined": found.statistics.determined[span],
         }
         if not found.converged:
-            # What is not the least misfit has no statistics.
+            # Statistics are valid at the least misfit only.
             values["determined"] = np.zeros(entry.size, dtype=bool)
         single = {key: _single(value) for key, value in values.items()}
         entries[entry.record.name] = {**single, "unit": entry.unit, **_tied(entry)}
@@ -75,13 +75,13 @@ def _shared(found: Identification) -> dict[str, Any]:
 
 
 def _tied(entry: UnknownEntry) -> dict[str, list[str]]:
-    """Names of numbers that follow an identified number; empty where there are none."""
+    """Entry with the names of numbers tied to an identified number; empty without any."""
     names = names_in(entry.record.parameter or ())
     return {"tied": list(names[1:])} if len(names) > 1 else {}
 
 
 def _own(found: Identification) -> dict[str, Any]:
-    """Unknowns of each case, by name: a list with an entry for each case."""
+    """Unknowns of the single cases, by name: a list with an entry for each case."""
     entries = {}
     first = 0
     for entry in found.layout.own:
@@ -94,19 +94,19 @@ def _own(found: Identification) -> dict[str, Any]:
 
 
 def _steps(found: Identification) -> dict[str, Any]:
-    """The steps of the motions that were measured, s, and their error in standard deviations; nothing without."""
+    """Entry of the time steps of measured motions, s, and their error in standard deviations; empty without motions."""
     if found.step is None:
         return {}
     return {"step": found.step, "step_error": found.step_error}
 
 
 def _single(values: npt.NDArray[Any]) -> Any:
-    """The number of a list that holds one."""
+    """The number in a list of length one; a longer list unchanged."""
     return values.tolist()[0] if len(values) == 1 else values.tolist()
 
 
 def _residual(found: Identification) -> dict[str, Any]:
-    """Root mean squares: in standard deviations, and by measurement in its unit too."""
+    """Root mean squares of residuals, in standard deviations, and for each measurement also in its unit."""
     by_measurement: dict[str, Any] = {}
     for number, measurement in enumerate(found.model.scene.measurements):
         rows = [row for row in found.rows if row.measurement == number and not row.held_out]

@@ -1,4 +1,4 @@
-"""The file of a table of targets: a row for each, with its outcome, the gaps, the error and the inputs found."""
+"""The file of a table of targets: one row per target, with outcome, gaps, error and the inputs found."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.results.json_text import csv_text
 
 MET = "met"
-"""Outcome of a row whose target is met."""
+"""Outcome of a row with a met target."""
 
 MISSED = "missed"
 """Outcome of a row with an equilibrium that misses its target."""
 
 UNSTABLE = "unstable"
-"""Outcome of a row whose equilibrium a real rod leaves."""
+"""Outcome of a row with an unstable equilibrium."""
 
 
 def row_outcome(inverse: Inverse, unstable: bool) -> str:
-    """How a row ended, in a word: met, missed, unstable, or the label of a failed solve.
+    """Outcome of a row in a word: met, missed, unstable, or the label of a failed solve.
 
     Args:
-        inverse: the row's end.
+        inverse: result of the row.
         unstable: whether an unstable equilibrium is accepted.
     """
     if not inverse.solution.converged:
@@ -35,12 +35,12 @@ def row_outcome(inverse: Inverse, unstable: bool) -> str:
 
 
 def table_text(table: TargetTable, found: Sequence[Inverse], unstable: bool) -> str:
-    """The file as text: the table's own columns, the outcome, gaps with their errors, error of the tips, and inputs.
+    """The file as text: columns of the table, outcome, gaps with their errors, error of the tips, and inputs.
 
     Args:
-        table: the targets.
-        found: the end of each row.
-        unstable: as in :func:`row_outcome`.
+        table: table of the targets.
+        found: result of each row.
+        unstable: whether unstable equilibria are accepted.
     """
     first = found[0].solution.model
     given = set(given_entries(first).tolist())
@@ -50,7 +50,7 @@ def table_text(table: TargetTable, found: Sequence[Inverse], unstable: bool) -> 
     rows = []
     for given, inverse in zip(table.values.tolist(), found, strict=True):
         cells: list[object] = [*given, row_outcome(inverse, unstable)]
-        # Where no equilibrium was found there is nothing to give.
+        # Rows without an equilibrium have empty cells.
         if inverse.solution.converged:
             (gap,) = inverse.gaps
             cells += [gap.position, gap.angle, gap.position_error, gap.angle_error]

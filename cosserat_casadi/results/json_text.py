@@ -16,14 +16,14 @@ SCHEMA = 1
 
 
 def plain(value: Any) -> Any:
-    """A value as JSON can hold it: arrays as lists, plain Python numbers, None for a number that is not finite."""
+    """A value for JSON: arrays as lists, plain Python numbers, None for a number that is not finite."""
     if isinstance(value, dict):
         return {key: plain(entry) for key, entry in value.items()}
     if isinstance(value, np.ndarray):
         return plain(value.tolist())
     if isinstance(value, list | tuple):
         return [plain(entry) for entry in value]
-    # JSON has no word for infinity and NaN.
+    # JSON has no infinity and no NaN.
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
@@ -44,7 +44,7 @@ def csv_text(header: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
 
 
 def _cell(value: Any) -> Any:
-    """Truth in small letters, a number as the shortest text that reads back as the same one; else empty."""
+    """Text of a cell: booleans in lower case, numbers in shortest round-trip form, else empty."""
     if isinstance(value, bool | np.bool_):
         return str(value).lower()
     if isinstance(value, float):

@@ -43,7 +43,7 @@ def _mode_entries(modes: Modes) -> list[dict[str, Any]]:
 
 
 def _shape_entry(shape: RodShape, index: int) -> dict[str, Any]:
-    """Displacements and rotations of one mode; where it is not in phase all over, their imaginary parts too."""
+    """Displacements and rotations of one mode, with imaginary parts if it is not in phase everywhere."""
     position = shape.position[index]
     rotation = shape.rotation[index]
     entry: dict[str, Any] = {"X": shape.X, "position": position.real, "rotation": rotation.real}

@@ -1,4 +1,4 @@
-"""The files of a motion: JSON with everything, CSV and Parquet with a row a time, NPZ with arrays by dotted name.
+"""The files of a motion: complete JSON, CSV and Parquet with one row per time, NPZ with arrays by dotted name.
 
 pyarrow is an extra and is imported inside functions only.
 """
@@ -30,7 +30,7 @@ from cosserat_casadi.results.solution_file import listed_abscissae
 from cosserat_casadi.sweeps.outcome_file import arrow_module
 
 FORMATS = (".json", ".csv", ".parquet", ".npz")
-"""Suffixes that a file of a motion may have."""
+"""Suffixes of files of a motion."""
 
 POSITION_COLUMNS = ("x", "y", "z")
 QUATERNION_COLUMNS = ("qw", "qx", "qy", "qz")
@@ -41,7 +41,7 @@ Column = tuple[str, FloatArray]
 
 
 def check_motion_path(path: str | Path) -> None:
-    """Refuse a file that could not be written, before any work is done for it.
+    """Refuse a file that cannot be written, before the motion is computed.
 
     Raises:
         SceneError: the suffix is none of FORMATS.
@@ -58,9 +58,9 @@ def check_motion_path(path: str | Path) -> None:
 def motion_columns(motion: Motion) -> dict[str, FloatArray]:
     """A motion as named columns over time, each of shape (T,), SI units.
 
-    ``t``; inputs as ``push.force.x``; of a rod ``rod.tip.x`` … ``rod.tip.qz`` and ``rod.X=0.5.x``; of a body
-    ``platform.x`` … ``platform.qz``; of an actuator ``cable.tension`` and ``cable.length``; ``energy.kinetic`` …
-    An effort or a conjugate that is an input too has one column, under the name of the input.
+    ``t``; inputs as ``push.force.x``; rods as ``rod.tip.x`` … ``rod.tip.qz`` and ``rod.X=0.5.x``; bodies as
+    ``platform.x`` … ``platform.qz``; actuators as ``cable.tension`` and ``cable.length``; ``energy.kinetic`` … An
+    effort or a conjugate that is also an input has only the column of the input.
     """
     columns: dict[str, FloatArray] = {}
     for name, values in _columns(motion):
@@ -69,7 +69,7 @@ def motion_columns(motion: Motion) -> dict[str, FloatArray]:
 
 
 def motion_result(motion: Motion) -> dict[str, Any]:
-    """All of a motion, its arrays not yet turned into lists."""
+    """All data of a motion, with numpy arrays instead of lists."""
     model = motion.model
     scene = model.scene
     data: dict[str, Any] = {
@@ -79,7 +79,7 @@ def motion_result(motion: Motion) -> dict[str, Any]:
         "discretisation": model.resolution,
         "rods": {name: _rod_entry(motion, name) for name in model.discrete.rods},
     }
-    # A reader of rods alone need not know of tables that the scene does not have.
+    # Tables of absent kinds of objects are left out.
     if scene.listed_bodies:
         data["bodies"] = {body.name: _pose_entry(motion.body(body.name)) for body in scene.listed_bodies}
     if scene.actuators:
@@ -136,7 +136,7 @@ def _add_pose(arrays: NamedArrays, name: str, pose: dict[str, FloatArray]) -> No
 
 
 def _contact_entry(motion: Motion) -> dict[str, Any]:
-    """Contact with obstacles: depths inside obstacles with a width; contacts and impacts with obstacles without."""
+    """Contact with obstacles: depths for obstacles with a width, contacts and impacts for obstacles without."""
     if not motion.model.scene.touches_exactly:
         entry = contact_entry(motion.model, motion.x, motion.inputs)
         return entry | rubbing_entries(motion, len(motion.times))
@@ -171,7 +171,7 @@ def _events_entry(motion: Motion) -> dict[str, list[Any]]:
 
 
 def _head(motion: Motion) -> dict[str, Any]:
-    """Entries of a motion that do not depend on time."""
+    """Time-independent entries of a motion."""
     return {
         "title": motion.model.scene.title,
         "converged": motion.converged,
@@ -187,11 +187,11 @@ def _head(motion: Motion) -> dict[str, Any]:
 
 
 def _inputs_over_time(motion: Motion) -> dict[str, FloatArray]:
-    """Every input at the T times, shape (T,) of a number, (T, 3) of a vector, (T, k, 3) of Legendre coefficients."""
+    """Every input at the T times: shape (T,) for a number, (T, 3) for a vector, (T, k, 3) for Legendre coefficients."""
     inputs = {}
     for entry, entries in motion.model.inputs:
         components, degrees = entry.shape
-        # Stacked coefficient after coefficient, as a reader of a result finds them.
+        # Coefficients are rows, as in other result files.
         values = motion.inputs[:, entries].reshape(-1, degrees, components)
         if degrees == 1:
             values = values[:, 0, :]
@@ -216,14 +216,14 @@ def _pose_entry(poses: Poses) -> dict[str, FloatArray]:
 
 
 def _actuator_entry(motion: Motion, name: str) -> dict[str, FloatArray]:
-    """Effort and conjugate by their own names, such as tension and length."""
+    """Effort and conjugate of an actuator by their names, such as tension and length."""
     function = motion.model.actuator[name]
     states = motion.actuator(name)
     return {function.name_out(0): states.effort, function.name_out(1): states.conjugate}
 
 
 def _joint_entry(motion: Motion, name: str) -> dict[str, FloatArray]:
-    """Effort and coordinate by the names of their keys, such as moment and angle, and the push of stops."""
+    """Effort and coordinate of a joint by their keys, such as moment and angle, and the effort of stops."""
     function = motion.model.joint[name]
     values = evaluated(function, motion.x, motion.inputs)
     return {key: value[:, 0, 0] for key, value in zip(function.name_out(), values, strict=True)}
@@ -265,17 +265,17 @@ def _vector_columns(name: str, values: FloatArray, endings: tuple[str, ...]) -> 
 
 
 def motion_table(motion: Motion) -> tuple[list[str], list[list[float]]]:
-    """Header and rows of the columns of a motion, a row a time."""
+    """Header and rows of the columns of a motion, one row per time."""
     columns = motion_columns(motion)
     return list(columns), np.column_stack(list(columns.values())).tolist()
 
 
 def write_parquet(motion: Motion, path: Path) -> None:
-    """Write the columns of a motion, whole or not at all; the same motion gives the same bytes.
+    """Write the columns of a motion atomically; the same motion gives the same bytes.
 
     Raises:
         ParquetUnavailableError: pyarrow is not installed.
-        WriteError: the file cannot be written, as on a full disk.
+        WriteError: the file cannot be written, e.g. on a full disk.
     """
     arrow = arrow_module()
     import pyarrow.parquet
@@ -283,7 +283,7 @@ def write_parquet(motion: Motion, path: Path) -> None:
     columns = {}
     for name, values in motion_columns(motion).items():
         columns[name] = arrow.array(values, mask=~np.isfinite(values))
-    # The columns cannot say how the motion ended: the head of the JSON file travels with them.
+    # The metadata holds the head of the JSON file, with the outcome of the motion.
     head = json.dumps(plain({"schema": SCHEMA, **_head(motion)}), ensure_ascii=False)
     table = arrow.table(columns).replace_schema_metadata({"cosserat": head})
     content = io.BytesIO()
@@ -292,11 +292,11 @@ def write_parquet(motion: Motion, path: Path) -> None:
 
 
 def write_npz(motion: Motion, path: Path) -> None:
-    """Write the arrays of a motion by dotted name, as :func:`write_parquet` writes its columns."""
+    """Write the arrays of a motion by dotted name, atomically and reproducibly."""
     content = io.BytesIO()
     data = {"schema": SCHEMA, **motion_result(motion)}
     if KEY in data:
-        # Numbers, lists and words of it are no columns: they are one text.
+        # The checkpoint holds numbers, lists and words: it is written as one JSON text.
         data[KEY] = json.dumps(plain(data[KEY]))
     arrays: dict[str, Any] = dict(_dotted(data))
     np.savez(content, **arrays)
@@ -304,7 +304,7 @@ def write_npz(motion: Motion, path: Path) -> None:
 
 
 def _dotted(data: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Entries of nested tables by dotted name; a title that the scene does not have is left out."""
+    """Entries of nested tables by dotted name; a missing title is left out."""
     for key, entry in data.items():
         if isinstance(entry, dict):
             yield from _dotted(entry, f"{prefix}{key}.")

@@ -1,4 +1,4 @@
-"""The files of a path: JSON with everything, CSV with the load–displacement table."""
+"""The files of a path: complete JSON, and CSV with the load–displacement table."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ POSE_COLUMNS = ("x", "y", "z", "qw", "qx", "qy", "qz")
 
 
 def _rod_entry(position: FloatArray, quaternion: FloatArray, X: float, section: FloatArray) -> dict[str, Any]:
-    """The plain data of a rod: of its tip, and of a section that moves where the tip is held."""
+    """The plain data of a rod: its tip, and a moving section if the tip is held."""
     tip = {"position": position, "quaternion": quaternion}
-    # A tip that moves is all that is asked for.
+    # A moving tip needs no further section.
     if X == 1.0:
         return {"tip": tip}
     return {"tip": tip, "section": {"X": X, "position": section}}
@@ -58,7 +58,7 @@ def path_table(path: EquilibriumPath) -> tuple[list[str], list[list[Any]]]:
 
 
 def _point_entries(path: EquilibriumPath) -> list[dict[str, Any]]:
-    # Of a rod whose tip is held also a section that moves.
+    # Rods with a held tip have also a moving section.
     rods = {}
     for name in path.model.discrete.rods:
         X = path.section(name)
@@ -72,7 +72,7 @@ def _point_entries(path: EquilibriumPath) -> list[dict[str, Any]]:
             **_stability_entry(path, index),
             "rods": {name: points[index] for name, points in rods.items()},
         }
-        # How deep rods are inside smooth obstacles is told of the whole path.
+        # Depths inside smooth obstacles are computed for the whole path at once.
         if path.model.scene.touches_exactly:
             entry["contacts"] = [
                 {**place_entry(contact), "kind": contact.kind, **point_forces(contact)}
@@ -86,7 +86,7 @@ def _event_entry(path: EquilibriumPath, event: PathEvent) -> dict[str, Any]:
     rods = {}
     for name in path.model.discrete.rods:
         X = path.section(name)
-        # An event lies between two points of the path.
+        # Events lie between points of the path.
         tip = path.event_tip(event, name)
         rods[name] = _rod_entry(tip.position, tip.quaternion, X, path.event_position(event, X, name))
     entry = {

@@ -1,7 +1,7 @@
-"""How each kind of result is presented: its plain data, the files that it can be written to, its figure, its lines.
+"""Presentation of each kind of result: plain data, files, figure, and lines of text.
 
-The table names functions as ``module:function``, so that a result loads the modules of its kind alone. It is the one
-place in which a kind of result is entered; :class:`cosserat_casadi.result.Result` reads it.
+The table names functions as ``module:function``, so that a result loads only the modules of its kind. A new kind of
+result needs an entry only in this table, which :class:`cosserat_casadi.result.Result` reads.
 """
 
 from __future__ import annotations
@@ -25,21 +25,21 @@ PICTURES = (".png", ".pdf", ".svg")
 """Suffixes of figures."""
 
 MOST_LINES = 10
-"""Lines of ``repr``."""
+"""Largest number of lines of ``repr``."""
 
 
 @dataclass(frozen=True)
 class Presentation:
-    """How one kind of result is presented.
+    """Presentation of one kind of result.
 
     Attributes:
         data: function of the result that returns its plain data, as ``module:function`` of ``cosserat_casadi``.
-        facts: function of the result that returns what matters as pairs of a label and its words.
+        facts: function of the result that returns the main facts as pairs of label and text.
         figure: function of the result that returns the matplotlib figure.
-        table: function of the result that returns the header and the rows of its CSV file; empty where it has none.
-        arrays: function of the result that returns its arrays with named axes; empty where it has none.
-        film: function (result, path, options) that draws its film; empty where it has none.
-        writers: functions (result, path) that write a file of another format, by its suffix.
+        table: function of the result that returns the header and the rows of its CSV file; empty without one.
+        arrays: function of the result that returns its arrays with named axes; empty without any.
+        film: function (result, path, options) that draws its film; empty without one.
+        writers: functions (result, path) that write files of other formats, by suffix.
     """
 
     data: str
@@ -52,19 +52,19 @@ class Presentation:
 
     @property
     def suffixes(self) -> tuple[str, ...]:
-        """Suffixes of all files that the result can be written to."""
+        """Suffixes of all file formats of the result."""
         table = (".csv",) if self.table else ()
         return tuple(dict.fromkeys((".json", *table, *self.writers, *PICTURES)))
 
 
 @dataclass(frozen=True)
 class NamedArrays:
-    """Arrays whose axes have names.
+    """Arrays with named axes.
 
     Attributes:
-        variables: by name the axes, the array, and its attributes such as ``units``.
-        coordinates: values along axes, by the name of the axis.
-        attributes: of the whole.
+        variables: axes, array and attributes such as ``units``, by name.
+        coordinates: values along axes, by axis name.
+        attributes: attributes of the dataset.
     """
 
     variables: dict[str, tuple[tuple[str, ...], Any, dict[str, str]]] = field(default_factory=dict)
@@ -72,12 +72,12 @@ class NamedArrays:
     attributes: dict[str, Any] = field(default_factory=dict)
 
     def add(self, name: str, axes: tuple[str, ...], array: FloatArray, units: str = "") -> None:
-        """Add an array, shaped as its axes, under a name that is new; units are left out where they are not known."""
+        """Add an array, with one dimension per axis, under a new name; unknown units are left out."""
         self.variables.setdefault(name, (axes, array, {"units": units} if units else {}))
 
 
 class FramesUnavailableError(CosseratError):
-    """A result as a DataFrame needs pandas, as a Dataset xarray."""
+    """Pandas, for a DataFrame, or xarray, for a Dataset, is not installed."""
 
     page = "notebook"
 
@@ -176,14 +176,14 @@ SHOWN = {
     "LinearModel": "results.facts:linear_model_facts",
     "Choice": "results.facts:choice_facts",
 }
-"""Facts of scenes and models by their class: functions as of :attr:`Presentation.facts`."""
+"""Facts of scenes and models by class: functions like :attr:`Presentation.facts`."""
 
 
 def presentation_of(result: Any) -> Presentation:
     """The presentation of a result.
 
     Raises:
-        TypeError: neither its class nor a base of it is in the table.
+        TypeError: neither its class nor a base class is in the table.
     """
     for kind in type(result).__mro__:
         if kind.__name__ in PRESENTATIONS:
@@ -192,13 +192,13 @@ def presentation_of(result: Any) -> Presentation:
 
 
 def data_of(result: Any) -> dict[str, Any]:
-    """Plain data of a result, as its JSON file holds it; a number that is not finite becomes None."""
+    """Plain data of a result, as in its JSON file; a number that is not finite becomes None."""
     data: dict[str, Any] = plain({"schema": SCHEMA, **_function(presentation_of(result).data)(result)})
     return data
 
 
 def csv_of(result: Any) -> str:
-    """The text of the CSV file of a result that has a table."""
+    """The text of the CSV file of a result with a table."""
     return csv_text(*_function(presentation_of(result).table)(result))
 
 
@@ -251,7 +251,7 @@ def figure_of(result: Any, **options: Any) -> Any:
 
 
 def animate(result: Any, path: str | Path, **options: Any) -> Path:
-    """Draw the film of a result into a file, whole or not at all; the path of the file.
+    """Draw the film of a result into a file, atomically; returns the path of the file.
 
     Raises:
         SceneError: this kind of result has no film, or none with that suffix.
@@ -267,7 +267,7 @@ def animate(result: Any, path: str | Path, **options: Any) -> Path:
 
 
 def facts_of(shown: Any) -> tuple[str | None, list[tuple[str, str]]]:
-    """Title of the scene of a result or a model, None where it has none, and what matters: labels and words."""
+    """Title of the scene of a result or a model, or None, and its main facts: labels and texts."""
     if isinstance(shown, Result):
         place = presentation_of(shown).facts
     else:
@@ -277,12 +277,12 @@ def facts_of(shown: Any) -> tuple[str | None, list[tuple[str, str]]]:
 
 
 def write(result: Any, path: str | Path, **options: Any) -> None:
-    """Write a result into a file, whole or not at all; the suffix says in which format.
+    """Write a result into a file, atomically, in the format of the suffix.
 
     Args:
         result: the result.
-        path: the file.
-        options: of the figure, where the file holds one.
+        path: path of the file.
+        options: options of the figure, for a file with a figure.
 
     Raises:
         SceneError: this kind of result has no file with that suffix.
@@ -306,7 +306,7 @@ def write(result: Any, path: str | Path, **options: Any) -> None:
 
 
 def write_all(result: Any, output: Path | None, *others: Path | None) -> list[Path]:
-    """Write a result as JSON into one file, whatever its suffix, and into others by theirs; the files written."""
+    """Write a result as JSON into ``output``, whatever its suffix, and into others by suffix; returns the files."""
     if output is not None:
         write_atomically(output, json_text(data_of(result)).encode())
     for other in others:
@@ -316,7 +316,7 @@ def write_all(result: Any, output: Path | None, *others: Path | None) -> list[Pa
 
 
 def text_of(shown: Any) -> str:
-    """Lines for a terminal: the class with the title, and below them what matters; at most MOST_LINES."""
+    """Lines for a terminal: class and title, then the main facts; at most MOST_LINES."""
     heading, facts = _facts(shown)
     width = max(len(label) for label, _ in facts)
     lines = [heading, *(f"  {label:<{width}}  {words}" for label, words in facts)]
@@ -327,7 +327,7 @@ def text_of(shown: Any) -> str:
 
 
 def html_of(shown: Any) -> str:
-    """HTML for a notebook: a table of the facts, and of a result the figure, or the reason why there is none."""
+    """HTML for a notebook: a table of the facts, and for a result the figure, or the reason of its absence."""
     heading, facts = _facts(shown)
     rows = [f"<tr><th>{escape(label)}</th><td>{escape(words)}</td></tr>" for label, words in facts]
     picture = _picture(shown) if isinstance(shown, Result) else ""
@@ -335,7 +335,7 @@ def html_of(shown: Any) -> str:
 
 
 def _picture(result: Any) -> str:
-    """The figure as an image inside the page; a sentence where it cannot be drawn."""
+    """The figure as an embedded image, or a sentence if it cannot be drawn."""
     try:
         figure = figure_of(result)
     except CosseratError as error:
@@ -345,7 +345,7 @@ def _picture(result: Any) -> str:
 
 
 def _facts(shown: Any) -> tuple[str, list[tuple[str, str]]]:
-    """The class with the title of the scene where it has one; labels and words."""
+    """Heading with the class and the title of the scene, if any; and labels with texts."""
     title, facts = facts_of(shown)
     kind = type(shown).__name__
     heading = f"{kind}: {title}" if title else kind
@@ -353,7 +353,7 @@ def _facts(shown: Any) -> tuple[str, list[tuple[str, str]]]:
 
 
 def _function(place: str) -> Callable[..., Any]:
-    """A function of the package by its place, ``module:function``."""
+    """A function of the package, given as ``module:function``."""
     module, name = place.split(":")
     function: Callable[..., Any] = getattr(import_module(f"cosserat_casadi.{module}"), name)
     return function

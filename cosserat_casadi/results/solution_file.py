@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from cosserat_casadi.control.inverse_result import Inverse
 
 SAMPLES = 41
-"""Abscissae, evenly spaced, at which a result lists a rod's fields; element ends come on top."""
+"""Evenly spaced abscissae of the fields of a rod in the file, which adds element ends."""
 
 
 def solution_result(solution: Solution) -> dict[str, Any]:
@@ -25,7 +25,7 @@ def solution_result(solution: Solution) -> dict[str, Any]:
     model = solution.model
     scene = model.scene
     inputs = model.inputs.unpack(solution.inputs)
-    # The forces of contacts are found, not given.
+    # Contact forces are unknowns, not inputs.
     given = input_layout(without_contacts(scene)).names
     data: dict[str, Any] = {
         "title": scene.title,
@@ -41,12 +41,12 @@ def solution_result(solution: Solution) -> dict[str, Any]:
         "smallest_eigenvalue": solution.smallest_eigenvalue,
         "iterations": solution.iterations,
         "load_factor": solution.load_factor,
-        # Columns of Legendre coefficients become rows, and what has one entry a number.
+        # Columns of Legendre coefficients become rows; an array with one entry becomes a number.
         "inputs": {name: value.T.squeeze() for name, value in inputs.items() if name in given},
         "discretisation": model.resolution,
         "rods": {name: _rod_entry(solution, name) for name in model.discrete.rods},
     }
-    # A reader of rods alone need not know of tables that the scene does not have.
+    # Tables of absent kinds of objects are left out.
     if scene.listed_bodies:
         data["bodies"] = {body.name: asdict(solution.body(body.name)) for body in scene.listed_bodies}
     if scene.actuators:
@@ -61,7 +61,7 @@ def solution_result(solution: Solution) -> dict[str, Any]:
 
 
 def _rod_entry(solution: Solution, name: str) -> dict[str, Any]:
-    """Fields of a rod at its abscissae, its tip, and what its clamp exerts."""
+    """Fields of a rod at its abscissae, its tip, and the reaction of its clamp."""
     breaks = solution.model.element_ends(name)
     X = listed_abscissae(breaks)
     pose = solution.pose(X, name)
@@ -79,10 +79,10 @@ def _rod_entry(solution: Solution, name: str) -> dict[str, Any]:
 
 
 def _contact_entry(contact: Contact) -> dict[str, Any]:
-    """Where a rod touches, and the forces on it: the resultant, and those at the point or at both ends of a line.
+    """Place of a contact, and forces on the rod: the resultant, and forces at the point or at both ends of a line.
 
-    Of a smooth contact, which has no such ends, the width of the obstacle and the smallest gap. Of rods that touch
-    where they are nearest, and the resultant on the first.
+    For a smooth contact, which has no such ends: the width of the obstacle and the smallest gap. For a contact between
+    rods: the nearest sections, and the resultant on the first rod.
     """
     entry: dict[str, Any] = place_entry(contact)
     if contact.on_rods is not None:
@@ -97,14 +97,14 @@ def _contact_entry(contact: Contact) -> dict[str, Any]:
 
 
 def listed_abscissae(breaks: tuple[float, ...]) -> FloatArray:
-    """Abscissae at which a result lists a rod whose elements end at these breaks."""
-    # Strains and internal forces may jump at a break: a reader finds it among the abscissae.
+    """Abscissae of the fields in the file of a rod with element ends at these breaks."""
+    # Strains and internal forces may jump at breaks, which are therefore among the abscissae.
     evenly = np.linspace(0.0, 1.0, SAMPLES)
     return np.unique(np.concatenate([evenly, breaks]))
 
 
 def inverse_result(inverse: Inverse) -> dict[str, Any]:
-    """An inverse problem's end as the data of its file."""
+    """The result of an inverse problem as the data of its file."""
     targets = []
     for target, gap in zip(inverse.targets, inverse.gaps, strict=True):
         entry = {

@@ -1,4 +1,4 @@
-"""A result file read back: the equilibrium that a motion starts from."""
+"""Reading a result file: the initial equilibrium of a motion."""
 
 from __future__ import annotations
 
@@ -25,21 +25,21 @@ from cosserat_casadi.scene.accuracy import MOST_MODES, MOST_NODES, MOST_SECTIONS
 WHERE = "--from"
 
 AGREEMENT = 1e-6
-"""Distance of positions, relative to the length, up to which an equilibrium is the one of the file."""
+"""Largest distance of positions from those of the file, over the length, for the same equilibrium."""
 
 
 def read_start(path: str | Path, scene: Scene) -> Solution | Checkpoint:
-    """The equilibrium of a result file, for a scene that has it; of a file of a motion, where it goes on.
+    """The equilibrium of a result file, checked against a scene; for the file of a motion, its checkpoint.
 
-    A result file lists strains along the rods. They give the strain coordinates; multipliers and floating frames are
-    found by solving once more, at the inputs of the file and on its discretisation. So are contacts that are exact.
+    A result file lists strains along the rods, which give the strain coordinates. Multipliers, floating frames and
+    exact contacts are found by a further solve, at the inputs of the file and on its discretisation.
 
     Args:
-        path: what ``cosserat solve`` has written.
-        scene: the scene; its numbers, inputs aside, must be as when the equilibrium was solved.
+        path: path of a file written by ``cosserat solve``.
+        scene: the scene; apart from inputs it must be the scene of the file.
 
     Raises:
-        SceneError: the file cannot be read or is not of an equilibrium, or the scene does not have that equilibrium.
+        SceneError: the file cannot be read, holds no equilibrium, or its equilibrium is not one of the scene.
     """
     checkpoint = read_checkpoint(path)
     if checkpoint is not None:
@@ -51,14 +51,14 @@ def read_start(path: str | Path, scene: Scene) -> Solution | Checkpoint:
     held = scene.held().baked()
     try:
         model = build(held, _discretisation(data, held))
-        # Contacts are looked for anew: the elements that they made of the rods are not those of the scene.
+        # Contacts are searched again: the elements of the file, split at contacts, differ from those of the scene.
         guess = None if held.touches_exactly else _strain_coordinates(model, data)
         solution = solve(model, _inputs(model, data), start=guess)
         distance = _distance(solution, data)
     except (KeyError, TypeError, ValueError, IndexError) as error:
         problem = "is no result file of this scene: something that it should hold is missing or of another shape"
         raise _refusal(path, problem, "write it with cosserat solve SCENE --output") from error
-    # A nan is no agreement.
+    # With NaN the comparison is false.
     if not (solution.converged and distance <= AGREEMENT):
         problem = "holds an equilibrium that this scene does not have"
         raise _refusal(path, problem, "the scene was changed since: solve it again")
@@ -67,7 +67,7 @@ def read_start(path: str | Path, scene: Scene) -> Solution | Checkpoint:
 
 def _read(path: Path) -> dict[str, Any]:
     try:
-        # Every number is one of double precision: of 400 digits it is infinite, and refused as such.
+        # Numbers are read in double precision: one of 400 digits is infinite, and refused.
         data = json.loads(path.read_text(encoding="utf-8"), parse_int=_whole_number)
     except OSError as error:
         raise _refusal(path, f"cannot be read: {error.strerror}", "") from error
@@ -79,7 +79,7 @@ def _read(path: Path) -> dict[str, Any]:
 
 
 def _whole_number(digits: str) -> int | float:
-    """A whole number as JSON has it; infinite where no number of double precision comes near."""
+    """An integer of JSON as a number; infinite beyond the range of double precision."""
     number = float(digits)
     return int(number) if math.isfinite(number) else number
 
@@ -92,7 +92,7 @@ def _discretisation(data: Mapping[str, Any], scene: Scene) -> dict[str, Discreti
     """The discretisation of every rod.
 
     Raises:
-        ValueError: one is none that a solve could have had.
+        ValueError: an invalid discretisation.
     """
     chosen = {}
     for rod in scene.rods:
@@ -117,7 +117,7 @@ def _check_whole(*numbers: Any, least: int, most: int) -> None:
 
 
 def _finite_array(listed: Any) -> FloatArray:
-    """An array of the file.
+    """An array of the file, with finite numbers.
 
     Raises:
         ValueError: a number is missing or not finite.
@@ -132,7 +132,7 @@ def _abscissae(listed: Any) -> FloatArray:
     """Abscissae X of the file.
 
     Raises:
-        ValueError: one does not lie on the rod.
+        ValueError: an abscissa is outside [0, 1].
     """
     X = _finite_array(listed)
     if X.ndim != 1 or X.min() < 0.0 or X.max() > 1.0:
@@ -141,7 +141,7 @@ def _abscissae(listed: Any) -> FloatArray:
 
 
 def _inputs(model: Model, data: Mapping[str, Any]) -> dict[str, FloatArray]:
-    """Values of the inputs that the file names; further ones of the scene keep the scene's values."""
+    """Values of the inputs in the file; further inputs have the values of the scene."""
     values = {}
     for entry in model.inputs.entries:
         if entry.name not in data["inputs"]:
@@ -154,14 +154,14 @@ def _inputs(model: Model, data: Mapping[str, Any]) -> dict[str, FloatArray]:
 
 
 def _strain_coordinates(model: Model, data: Mapping[str, Any]) -> FloatArray:
-    """Unknowns whose strain coordinates fit the strains of the file, and that are zero otherwise; shape (size,)."""
+    """Unknowns, shape (size,): strain coordinates fitted to the strains of the file, other unknowns zero."""
     x = model.unloaded()
     stacked = model.pack(_inputs(model, data))
     for name, rod in model.discrete.rods.items():
         X = _abscissae(data["rods"][name]["X"])
         strain = _finite_array(data["rods"][name]["strain"])
         intrinsic = known(rod.properties.intrinsic_strain(X))
-        # Strain coordinates are of the reference length, strains of the length that the rod has.
+        # Strain coordinates refer to the reference length, strains to the current length of the rod.
         deviation = (strain - intrinsic) * model.length_ratio(name, stacked)
         q = x[model.discrete.unknowns.strain(name)]
         for component, columns in rod.columns.items():
@@ -171,7 +171,7 @@ def _strain_coordinates(model: Model, data: Mapping[str, Any]) -> FloatArray:
 
 
 def _distance(solution: Solution, data: Mapping[str, Any]) -> float:
-    """Largest distance between positions of a solution and positions in the file, over the length of the rod."""
+    """Largest distance between positions of a solution and of the file, over the length of the rod."""
     distances = []
     for name, rod in solution.model.discrete.rods.items():
         listed = data["rods"][name]

@@ -14,7 +14,7 @@ from cosserat_casadi.sweeps.sobol import CONFIDENCE, Estimates, SobolIndices
 
 
 def sweep_result(sweep: Sweep) -> dict[str, Any]:
-    """Columns of a sweep by name, the outcome of each row, and the record; NaN where a row has no result."""
+    """Columns of a sweep by name, the outcome of each row, and the record; rows without a result have NaN."""
     return {
         "outcome": sweep.outcome,
         "columns": {name: sweep[name] for name in sweep.columns},
@@ -23,13 +23,13 @@ def sweep_result(sweep: Sweep) -> dict[str, Any]:
 
 
 def sweep_arrays(sweep: Sweep) -> NamedArrays:
-    """The columns of a sweep: over an axis for each swept column where it is a full grid, else over ``row``."""
+    """The columns of a sweep: for a full grid over one axis per swept column, else over ``row``."""
     attributes = {"title": sweep.record.get("title") or ""}
     swept = np.column_stack([sweep[name] for name in sweep.swept])
     ticks = [np.unique(column) for column in swept.T]
     shape = tuple(len(values) for values in ticks)
     if len(swept) == math.prod(shape) == len(np.unique(swept, axis=0)):
-        # In the order of the axes: the last column runs fastest.
+        # In the order of the axes: the last column varies fastest.
         order = np.lexsort(swept.T[::-1])
         arrays = NamedArrays(coordinates=dict(zip(sweep.swept, ticks, strict=True)), attributes=attributes)
         axes, names = sweep.swept, sweep.found
@@ -45,7 +45,7 @@ def sweep_arrays(sweep: Sweep) -> NamedArrays:
 
 
 def sobol_result(indices: SobolIndices) -> dict[str, Any]:
-    """Indices of every result by column; NaN where the result does not vary."""
+    """Indices of every result by column; NaN for a constant result."""
     return {
         "factors": list(indices.factors),
         "samples": indices.samples,

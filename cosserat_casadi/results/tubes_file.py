@@ -10,7 +10,7 @@ from cosserat_casadi.tubes.tube_solution import TubeSolution
 
 
 def tubes_result(solution: TubeSolution | TubeEquilibria) -> dict[str, Any]:
-    """An equilibrium, or all at the same inputs by their energy, as the data of a file."""
+    """An equilibrium, or all equilibria at the same inputs in order of energy, as the data of a file."""
     if isinstance(solution, TubeSolution):
         entries = _equilibrium(solution)
     else:

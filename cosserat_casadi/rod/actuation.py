@@ -1,8 +1,8 @@
-"""Actuators as a rod sees them: an effort that works on a quantity which the strains alone make.
+"""Actuators in the mechanics of a rod: an effort does work on a quantity that is a function of the strains alone.
 
 The quantity is a sum over the nodes, L = ℓ Σ w_k g(ξ_k), the length of a cable or the volume of a channel. An effort τ
 with the energy τ L adds τ ∂L/∂q to the residual and τ ∂²L/∂q² to its Jacobian; no pose of a section enters. In the
-words of report (2.15), (2.16) the stress against the elastic one is Λ_ad = τ ∂g/∂ξ. See docs/theory.md section 6.
+notation of report (2.15), (2.16) the stress against the elastic one is Λ_ad = τ ∂g/∂ξ. See docs/theory.md section 6.
 """
 
 from __future__ import annotations
@@ -41,9 +41,9 @@ class SectionMotions(Protocol):
 
 
 class Conjugate(ABC):
-    """A length or volume that an effort works on, for a rod of known strain.
+    """A length or volume on which an effort does work, for a rod of known strain.
 
-    Unless a kind of it says otherwise the effort reaches every section undiminished: the pull is the gradient.
+    By default the effort reaches every section undiminished: the pull is the gradient.
     """
 
     @property
@@ -58,18 +58,18 @@ class Conjugate(ABC):
 
     @abstractmethod
     def curvature(self, a: int, b: int) -> Matrix | None:
-        """∂²(ℓ w g)/∂ξ_a∂ξ_b at the nodes, 1×M; None where it vanishes whatever the rod does."""
+        """∂²(ℓ w g)/∂ξ_a∂ξ_b at the nodes, 1×M; None if it is zero for every shape."""
 
     @property
     def pull(self) -> Matrix:
-        """Generalised force of a unit of effort, n×1: the gradient ∂L/∂q, less the losses by friction along the rod."""
+        """Generalised force of a unit of effort, n×1: the gradient ∂L/∂q, less losses by friction along the rod."""
         return self.gradient
 
     @property
     def wrench(self) -> LineWrench | None:
-        """Wrenches on sections whose generalised force is the pull; None where the pull is formed from strains alone.
+        """Wrenches on sections with the pull as generalised force; None if the pull is computed from strains alone.
 
-        They balance. The rod takes them among its loads, in the same sweeps.
+        They are self-equilibrated. The rod takes them among its loads, in the sweeps of the loads.
         """
         return None
 
@@ -80,12 +80,12 @@ class Conjugate(ABC):
 
     @property
     def further_stiffness(self) -> Matrix | None:
-        """Part of ∂ pull/∂q that the curvature and wrenches do not hold, n×n; None where they hold all of it."""
+        """Part of ∂ pull/∂q beyond the curvature and the wrenches, n×n; None if there is none."""
         return None
 
     @property
     def section_stiffness(self) -> Matrix | None:
-        """Change of minus the wrench with the motions [δr; δθ] of its nodes, stacked by component, 6k×6k; as there."""
+        """Derivative of minus the wrench by the motions [δr; δθ] of its nodes, stacked by component, 6k×6k, or None."""
         return None
 
     @property
@@ -94,12 +94,12 @@ class Conjugate(ABC):
         return True
 
     def rate(self, rate_of: Callable[[Matrix], Matrix]) -> Matrix:
-        """Rate of what a unit of effort works on, from the rate of any value, 1×1."""
+        """Rate of the quantity on which a unit of effort does work, 1×1; ``rate_of`` gives the rate of a value."""
         return rate_of(self.value)
 
 
 class ShapeQuantity(Protocol):
-    """A length or volume that an effort works on, as a function of the rod's shape."""
+    """A length or volume on which an effort does work, as a function of the rod's shape."""
 
     def on(self, shape: Shape) -> Conjugate:
         """The quantity on a rod of this shape."""
@@ -110,7 +110,7 @@ class Actuation:
     """An effort on a rod.
 
     Attributes:
-        quantity: the length or volume that the effort works on.
+        quantity: the length or volume on which the effort does work.
         effort: 1×1; the energy is effort times quantity, so a pressure is negative and a tension positive.
     """
 
@@ -128,8 +128,9 @@ class StrainSum:
     Attributes:
         components: the strains c that it depends on.
         densities: g, shape (len(components), M), numbers or expressions.
-        factors: f, one for each component, such as what an input makes of constant densities; None where all are 1.
-        unloaded: ε, shaped as the densities: strains whose stress the rod's Hooke tensor H gives; None without any.
+        factors: f, one for each component, such as an input that scales constant densities; None if all are 1.
+        unloaded: strains ε in the shape of the densities, which the Hooke tensor H turns into stresses; None without
+            any.
     """
 
     components: Sequence[int]
@@ -173,7 +174,7 @@ class StrainSumOnRod(Conjugate):
         rows: list[tuple[FloatArray, Numbers]] = []
         for c in rod.admitted:
             phi = rod.at_nodes[c]
-            # A strain that the quantity does not depend on has no weight.
+            # Strains on which the quantity does not depend have no weight.
             own = weights.get(c, np.zeros(rod.grid.size))
             rows.append((phi.T, own))
         if self.quantity.factors is not None or any_symbolic(own for _, own in rows):
@@ -187,7 +188,7 @@ class StrainSumOnRod(Conjugate):
         return
 
     def _times_factor(self, component: int, value: Matrix) -> Matrix:
-        """A share of a strain in the quantity, times its factor."""
+        """The term of a strain in the quantity, times its factor."""
         if self.quantity.factors is None or component not in self.quantity.components:
             return value
         return self.quantity.factors[list(self.quantity.components).index(component)] * value

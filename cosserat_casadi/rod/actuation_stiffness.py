@@ -1,4 +1,4 @@
-"""Stiffness of a rod from functions of its strains that are nonlinear: lengths, volumes, energy beyond Hooke's law."""
+"""Stiffness of a rod from nonlinear functions of its strains: lengths, volumes, energy beyond Hooke's law."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from cosserat_casadi.rod.igm import InverseGeometricModel
 
 
 def actuation_stiffness(igm: InverseGeometricModel, motions: SectionMotions) -> Matrix | None:
-    """Σ τ ∂ pull/∂q / (EI/ℓ) of all efforts and of the material, n×n; None where it vanishes.
+    """Σ τ ∂ pull/∂q / (EI/ℓ) of all efforts and of the material, n×n; None if it is zero.
 
     The part of frozen wrenches is left out: it is in the stiffness of the loads.
     """
@@ -28,7 +28,7 @@ def actuation_stiffness(igm: InverseGeometricModel, motions: SectionMotions) -> 
 
 
 def _section_stiffness(igm: InverseGeometricModel, motions: SectionMotions) -> list[Matrix]:
-    """Change of the wrenches of efforts with the motions of their sections, n×n, one for each set of sections."""
+    """Stiffness by the change of efforts' wrenches with the motions of sections, n×n, for each set of sections."""
     operators: dict[tuple[int, ...], Matrix] = {}
     for effort, conjugate in igm.efforts:
         operator = conjugate.section_stiffness
@@ -41,7 +41,7 @@ def _section_stiffness(igm: InverseGeometricModel, motions: SectionMotions) -> l
 
 
 def _curvature_stiffness(igm: InverseGeometricModel) -> Matrix | None:
-    """Σ τ ∂²L/∂q∂qᵀ / (EI/ℓ) of all efforts, n×n: sums over the nodes of rows that they share."""
+    """Σ τ ∂²L/∂q∂qᵀ / (EI/ℓ) of all efforts, n×n, from sums of their rows at the nodes."""
     admitted = igm.rod.admitted
     blocks = {}
     for a in admitted:
@@ -58,7 +58,7 @@ def _curvature_stiffness(igm: InverseGeometricModel) -> Matrix | None:
 
 def _curvature_block(igm: InverseGeometricModel, a: int, b: int) -> Matrix:
     """Block of the stiffness in the coordinates of strain a, rows, and of strain b, columns."""
-    # Efforts first add their rows at the nodes: one product with Φ for all of them.
+    # The rows of all efforts at the nodes are summed first: one product with Φ serves all.
     rows = []
     for effort, conjugate in igm.strain_functions:
         curvature = conjugate.curvature(a, b)

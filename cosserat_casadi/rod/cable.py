@@ -1,10 +1,10 @@
 """A cable through the sections of a rod: its length and how it varies with the strains.
 
 The cable runs at D(X) in the sections, so its tangent in the section's frame is T = Γ + K × D + D'/ℓ and its length
-L = ℓ ∫ |T| dX. A tension τ does the work −τ δL. What the cable puts against the elastic stress is therefore
-Λ_ad = τ [D × t; t] with t = T/|T|, report (2.15), whatever the routing, and its generalised force τ ∂L/∂q needs no
-pose of any section. The sums over the nodes below are exact derivatives of the length that the nodes give. See
-docs/theory.md section 6.
+L = ℓ ∫ |T| dX. A tension τ does the work −τ δL. The stress of the cable against the elastic stress is therefore Λ_ad =
+τ [D × t; t] with t = T/|T|, report (2.15), for every routing, and its generalised force τ ∂L/∂q needs no pose of any
+section. The sums over the nodes below are exact derivatives of the length that the nodes give. See docs/theory.md
+section 6.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from cosserat_casadi.rod.actuation import Conjugate
 from cosserat_casadi.rod.kinematics import Shape
 
 Row = Matrix | None
-"""A field on the nodes of the routing, 1×k; None where it is zero whatever the rod does."""
+"""A field on the nodes of the routing, 1×k; None if it is zero for every shape."""
 
 
 @dataclass(frozen=True)
 class Routing:
-    """Where a cable runs through the sections, at the k nodes of the elements that it passes.
+    """Path of a cable in the sections, at the k nodes of the elements that it passes.
 
     Attributes:
         nodes: indices of the nodes, shape (k,).
@@ -46,7 +46,7 @@ class Routing:
         check_shape("slope", self.slope, 2, count)
 
     def on(self, shape: Shape) -> RoutedCable:
-        """The cable on a rod of this shape: the quantity is its length."""
+        """The cable on a rod of this shape; the quantity is its length."""
         return RoutedCable(shape, self)
 
 
@@ -62,12 +62,12 @@ class Cable(Conjugate):
 
     @property
     def mean_share(self) -> Matrix | None:
-        """Mean tension along the course over the tension at its base, 1×1; None where the tension is uniform."""
+        """Mean tension along the course over the tension at its base, 1×1; None if the tension is uniform."""
         return None
 
     @property
     def mean_share_gradient(self) -> Matrix | None:
-        """Derivative of the mean share with q, n×1; None where the tension is uniform."""
+        """Derivative of the mean share by q, n×1; None if the tension is uniform."""
         return None
 
 
@@ -76,7 +76,7 @@ class RoutedCable(Cable):
     """A cable on its routing through a deformed rod.
 
     Attributes:
-        routing: where the cable runs.
+        routing: path of the cable in the sections.
     """
 
     routing: Routing
@@ -84,7 +84,7 @@ class RoutedCable(Cable):
     @cached_property
     def tangent(self) -> tuple[Row, Row, Row]:
         """T in the sections' frames, three rows."""
-        # K × D with D = (D_x, D_y, 0), written out so that rows which vanish are left out.
+        # K × D with D = (D_x, D_y, 0), written by components so that zero rows are left out.
         kx, ky, kz, gx, gy, gz = self._strain
         dx, dy = self._offset
         length = self.shape.rod.length
@@ -98,7 +98,7 @@ class RoutedCable(Cable):
 
     @property
     def is_parallel(self) -> bool:
-        """Whether the cable stays parallel to the rod: its direction is ±1 along the axis, and |T| bends nowhere."""
+        """Whether the cable stays parallel to the rod: its direction is ±1 along the axis, and |T| has no curvature."""
         x, y, _ = self.tangent
         return x is None and y is None
 
@@ -115,7 +115,7 @@ class RoutedCable(Cable):
 
     @property
     def stretch_along(self) -> Row:
-        """T_z per length of the rod, 1×k: negative where the sections turn matter inside out."""
+        """T_z per length of the rod, 1×k: negative where the strain would turn matter inside out."""
         along = self.tangent[2]
         if along is None:
             return None
@@ -134,7 +134,7 @@ class RoutedCable(Cable):
 
     @cached_property
     def lever(self) -> dict[int, Row]:
-        """Rate of |T| with each admitted strain, the components of [D × t; t]."""
+        """Derivative of |T| by each admitted strain: the components of [D × t; t]."""
         # [D × t; t], angular part first.
         x, y, z = self.direction
         dx, dy = self._offset
@@ -160,7 +160,7 @@ class RoutedCable(Cable):
         return self._work_of(self.lever)
 
     def curvature(self, a: int, b: int) -> Row:
-        """∂²(ℓ w |T|)/∂ξ_a∂ξ_b at the nodes of the whole rod, 1×M, m; None where it vanishes.
+        """∂²(ℓ w |T|)/∂ξ_a∂ξ_b at the nodes of the whole rod, 1×M, m; None if it is zero for every shape.
 
         With T linear in the strains, ∂²|T| = (∂_aT·∂_bT − ∂_a|T| ∂_b|T|) / |T|.
         """
@@ -173,7 +173,7 @@ class RoutedCable(Cable):
         if across is None:
             return None
         row = across / self.stretch * ca.DM(self._node_lengths).T
-        # The nodes of other elements, which the cable does not pass, have no entry.
+        # Nodes of elements that the cable does not pass have no entry.
         whole = type(row)(1, self.shape.rod.grid.size)
         whole[self.routing.nodes.tolist()] = row
         return whole
@@ -215,7 +215,7 @@ class RoutedCable(Cable):
         return np.asarray(self.shape.rod.at_nodes[c][self.routing.nodes])
 
     def _metric(self, a: int, b: int) -> Row:
-        """Scalar product of the rates of T with two strains, 1×k."""
+        """Scalar product of the derivatives of T by two strains, 1×k."""
         pairs = zip(self.tangent_rates[a], self.tangent_rates[b], strict=True)
         metric = added(*[product(one, other) for one, other in pairs])
         # A zero without sign, whichever factor it comes from.
@@ -233,7 +233,7 @@ class RoutedCable(Cable):
 
 
 def _constant(row: Numbers) -> Row:
-    """A row of numbers or expressions; None where all are zero."""
+    """A row of numbers or expressions; None if all are zero."""
     return None if is_zero(row) else as_matrix(row).T
 
 
@@ -250,5 +250,5 @@ def product(a: Row, b: Row) -> Row:
 
 
 def negative(row: Row) -> Row:
-    """A field of the other sign."""
+    """A field times −1."""
     return None if row is None else -row

@@ -1,4 +1,4 @@
-"""How finely a rod is resolved: data that a user fixes or a tuner chooses."""
+"""Discretisation of a rod: data that a user fixes, or the search for a tolerance chooses."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 from cosserat_casadi.maths.grid import Grid
 
 TRANSPORTS = ("magnus4", "magnus6", "magnus8", "permuted")
-"""Ways to integrate the rotation: three product-of-exponentials methods and the literal system of chapter 3."""
+"""Rotation integrators: three product-of-exponentials methods and the literal system of chapter 3."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Discretisation:
             raise ValueError(f"transport is one of {TRANSPORTS}, got {self.transport!r}")
 
     def plain(self) -> dict[str, Any]:
-        """The discretisation as data; sections of layers only where they do not follow from the intervals."""
+        """The discretisation as data; ``sections`` is left out if it follows from the intervals."""
         return {name: value for name, value in asdict(self).items() if name != "sections" or value}
 
     @property

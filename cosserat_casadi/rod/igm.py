@@ -1,6 +1,6 @@
 """Inverse Geometric Model: strain coordinates and loads ↦ generalised force and base wrench, report (2.18)–(2.20).
 
-The residual K_εε q + Q_ad is divided by EI/ℓ, so it is without unit and of the size of F ℓ²/EI. See docs/theory.md
+The residual K_εε q + Q_ad is divided by EI/ℓ, so it is dimensionless and of the order of F ℓ²/EI. See docs/theory.md
 section 6.
 """
 
@@ -47,7 +47,7 @@ class InverseGeometricModel:
 
     @cached_property
     def pulled(self) -> Statics:
-        """The rod under its loads, and under efforts that act as wrenches on sections, of which none reaches the base.
+        """Statics of the rod under its loads and the efforts that act as wrenches on sections; these need no clamp.
 
         The internal wrench of :attr:`statics` belongs to the rod and its tendons together.
         """
@@ -62,7 +62,7 @@ class InverseGeometricModel:
             force = force + effort * wrench.force
             moment = moment + effort * wrench.moment
         total = LineWrench(force, moment, None, follower=False)
-        # Loads that depend on poses have been evaluated.
+        # Loads that depend on poses are already evaluated.
         return Statics(self.shape, [*self.statics.fixed_wrenches, total], self.statics.pose_loads)
 
     @cached_property
@@ -89,19 +89,19 @@ class InverseGeometricModel:
 
     @cached_property
     def energy_beyond_hooke(self) -> Conjugate | None:
-        """Elastic energy beyond the Hooke tensor's, J, at this shape; None for a rod that is linear."""
+        """Elastic energy beyond the Hooke tensor's, J, at this shape; None for a linear rod."""
         return energy_beyond_hooke(self.shape)
 
     @cached_property
     def strain_functions(self) -> tuple[tuple[Matrix, Conjugate], ...]:
-        """Functions of the strains with their factors: the sum of the products is energy, J, that no pose enters."""
+        """Functions of the strains with factors; the sum of products is the energy, J, of strains alone."""
         if self.energy_beyond_hooke is None:
             return self.efforts
         return (*self.efforts, (ca.DM(1.0), self.energy_beyond_hooke))
 
     @cached_property
     def further_force(self) -> Matrix | None:
-        """ℓ ∫ Φᵀ Bᵀ Λ_ad dX / (EI/ℓ), n×1: what stands beside the linear stress, report (2.16); None if nothing does.
+        """ℓ ∫ Φᵀ Bᵀ Λ_ad dX / (EI/ℓ), n×1, of all stress beside the linear elastic one, report (2.16); None if none.
 
         Λ_ad is the stress of actuators, and the stress of the material beyond Hooke's law.
         """
@@ -134,7 +134,7 @@ class InverseGeometricModel:
         None unless every load is a dead force or has an energy, and the pull of every effort is a gradient. With
         r = S t and n̂ = Sᵀ f the work of the dead forces is Σ n̂_k·t_k, so the residual is its exact gradient.
         """
-        # A dead moment may have a potential, but none that is a function of q written here.
+        # A dead moment may have a potential, but it is not written here.
         if any(w.follower or w.moment is not None for w in self.statics.fixed_wrenches):
             return None
         if any(load.energy is None for load in self.statics.pose_loads):

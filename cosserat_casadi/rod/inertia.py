@@ -1,4 +1,4 @@
-"""Inertia of a rod: the wrench that it puts on its sections, its kinetic energy and its momentum.
+"""Inertia of a rod: the wrench of inertia on its sections, its kinetic energy and its momentum.
 
 The discrete kinetic energy is T = ½ Σ ℓ w (ρA ṙ·ṙ + Σ c_k ḋ_k·ḋ_k) over the nodes: the mass of each section in its
 centre, and its second moments c_k = ∫ρ x_k² dA along the directors d_k. Rotary inertia about the axes of the section is
@@ -38,7 +38,7 @@ from cosserat_casadi.rod.wrenches import LineWrench
 def second_moments(rotary_inertia: Numbers) -> Numbers:
     """Second moments c_k along the section's axes from the inertia about them, shape (k, 3) each, kg m.
 
-    c_1 = (J_2 + J_3 − J_1)/2, and so on round.
+    c_1 = (J_2 + J_3 − J_1)/2, and cyclically.
     """
     if is_symbolic(rotary_inertia):
         half_sum = ca.sum2(rotary_inertia) / 2
@@ -62,19 +62,19 @@ class SectionMasses:
 
 
 def rod_mass(rod: DiscreteRod) -> float:
-    """Mass of a rod, kg; 0 of a rod without mass."""
+    """Mass of a rod, kg; 0 for a rod without mass."""
     masses = section_masses(rod)
     return 0.0 if masses is None else float(known(rod.node_lengths) @ known(masses.mass))
 
 
 def section_masses(rod: DiscreteRod, ratio: Ratio = None) -> SectionMasses | None:
-    """Mass and second moments of a rod's sections and of masses fixed to them; None where nothing has mass.
+    """Mass and second moments of a rod's sections and of masses fixed to them; None without any mass.
 
     In sums over the nodes, a mass that is fixed to a node is a mass per length over the length of the node.
 
     Args:
         rod: the rod.
-        ratio: its length relative to the reference length, where that is free.
+        ratio: length of the rod relative to the reference length; None if it is fixed.
     """
     masses = masses_along(rod)
     for fixed in rod.properties.fixed_masses:
@@ -89,7 +89,7 @@ def section_masses(rod: DiscreteRod, ratio: Ratio = None) -> SectionMasses | Non
 
 
 def _with_fixed(masses: Numbers, added: Scalar, fixed: FixedMass, rod: DiscreteRod, ratio: Ratio) -> Numbers:
-    """Masses per length of the nodes with one that is fixed to a section."""
+    """Masses per length of the nodes plus a mass that is fixed to a section."""
     node = rod.grid.node_at(fixed.at)
     length = rod.node_lengths[node] if ratio is None else rod.node_lengths[node] * ratio
     density = added / length
@@ -118,10 +118,10 @@ def masses_along(rod: DiscreteRod) -> SectionMasses | None:
 def _axes_with_moment(properties: RodProperties, along_axes: Numbers) -> list[int]:
     """Axes along which sections have a second moment."""
     if is_symbolic(along_axes):
-        # Of a plane section the moment along the tangent is zero, J_x + J_y − J_z.
+        # A plane section has a zero moment along the tangent, J_x + J_y − J_z.
         return [0, 1] if properties.plane_sections else [0, 1, 2]
     sizes = np.abs(known(along_axes))
-    # Zero by cancellation in a plane section.
+    # In a plane section it is zero by cancellation.
     return [axis for axis in range(3) if np.any(sizes[:, axis] > 1e-12 * sizes.max())]
 
 
@@ -130,8 +130,8 @@ class RodInertia:
     """Inertia of a rod in motion, in the axes of its base.
 
     Attributes:
-        motion: of its sections.
-        masses: what moves.
+        motion: motion of its sections.
+        masses: masses and second moments at the nodes.
     """
 
     motion: RodMotion

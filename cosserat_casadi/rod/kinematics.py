@@ -1,7 +1,7 @@
 """Forward sweep: from strain coordinates to the poses of the sections, report (1.9), (1.10), (2.17).
 
-Everything is in the frame of the base section: the base starts at the origin with the identity rotation, and the
-pose of the base enters where loads come in and results go out. See docs/theory.md sections 4 and 5.
+All fields are in the frame of the base section: the base is at the origin with the identity rotation, and the pose of
+the base enters only with loads and results. See docs/theory.md sections 4 and 5.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class Shape:
         q: strain coordinates, n×1.
         section_quaternion: quaternions of the distinct sections, 4×(intervals + 1).
         intervals: rotations of the intervals between them; None where the rotation is not their product.
-        ratio: length of the rod relative to the reference length, where that is free.
+        ratio: length of the rod relative to the reference length; None if it is fixed.
     """
 
     rod: DiscreteRod
@@ -50,7 +50,7 @@ class Shape:
 
     @property
     def interval_arguments(self) -> tuple[Matrix, Matrix, Matrix, Matrix]:
-        """Turn, Ω, factors and rotation at the beginning of every interval, as the kernels of derivatives take them."""
+        """Turn, Ω, factors and rotation at the beginning of every interval: arguments of the kernels of derivatives."""
         intervals = self.intervals
         if intervals is None:
             raise ValueError("this rod's rotation is not a product of increments")
@@ -69,8 +69,8 @@ class Shape:
 
     @cached_property
     def tangent(self) -> Matrix:
-        """Rate of position dr/dX = ℓ R Γ at the nodes, 3×M, in metres."""
-        # Shear and extension; a component that is zero whatever the load has no row.
+        """Tangent t = dr/dX = ℓ R Γ at the nodes, 3×M, m."""
+        # Shear and extension; a component that is zero under every load has no row.
         strain = self.rod.strain_rows(self.q, (3, 4, 5), self.ratio)
         length = self.rod.length
         terms = []
@@ -93,9 +93,9 @@ class Shape:
         """Weighted means of the positions at the nodes, 3×k, in metres.
 
         Args:
-            weights: of the nodes, M×k.
+            weights: weights of the nodes, M×k.
         """
-        # One product with the tangents: positions of all nodes would take another with the whole matrix.
+        # One product with the tangents; positions of all nodes would take a second one with the whole matrix.
         of_tangents = ca.DM(self.rod.grid.integration_matrix).T @ weights
         return self.tangent @ of_tangents
 

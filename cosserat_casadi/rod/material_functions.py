@@ -1,4 +1,4 @@
-"""Stress of a material that is not linear, and how far strains are from its limits: docs/theory.md, section 6."""
+"""Stress of a nonlinear material, and margins of strains to its limits: docs/theory.md, section 6."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from cosserat_casadi.rod.strain_density import energy_beyond_hooke
 
 
 def material_margin(shape: Shape) -> Matrix | None:
-    """Least margin of the material at the nodes, 1×1, without unit; None of a rod that is linear.
+    """Least margin of the material at the nodes, 1×1, dimensionless; None for a linear rod.
 
-    Negative where a further strain would set energy free, or where the law is not known.
+    It is negative if a further strain would release energy, or if the strain is outside of the law.
     """
     energy = energy_beyond_hooke(shape)
     rod = shape.rod
@@ -31,7 +31,7 @@ def material_margin(shape: Shape) -> Matrix | None:
 
 
 def stress_beyond_hooke(law: EnergyBeyondHooke, data_size: int) -> ca.Function:
-    """The function (change of strains 6×1, data) ↦ stress beyond the Hooke tensor's, 6×1, N m and N."""
+    """(change of strains 6×1, data) ↦ stress beyond the Hooke tensor's, 6×1, N m and N."""
     change = ca.SX.sym("change", 6)
     data = ca.SX.sym("data", data_size)
     gradient = ca.jacobian(law.density(change, data), change).T
@@ -56,9 +56,9 @@ def section_margins(law: EnergyBeyondHooke, admitted: tuple[int, ...], data_size
 
 
 def _pivots(matrix: ca.SX) -> ca.SX:
-    """Pivots of Gaussian elimination of a symmetric matrix: all are positive where it is positive definite.
+    """Pivots of Gaussian elimination of a symmetric matrix; all are positive if it is positive definite.
 
-    Behind the first that is not they mean nothing, and are not read.
+    Pivots after the first one that is not positive have no meaning, and are not used.
     """
     pivots = []
     remaining = matrix
@@ -66,7 +66,7 @@ def _pivots(matrix: ca.SX) -> ca.SX:
         pivot = remaining[0, 0]
         pivots.append(pivot)
         column = remaining[1:, 0]
-        # A pivot that is not positive is told already; divided by it nothing would be a number.
+        # A pivot that is not positive is already in the result; a division by it could give NaN.
         safe = ca.if_else(pivot > 0, pivot, 1)
         remaining = remaining[1:, 1:] - column @ column.T / safe
     return ca.vertcat(*pivots)

@@ -1,4 +1,4 @@
-"""Loads that depend on the motion of their sections: their share of the derivatives K, C and M of a rod in motion.
+"""Loads that depend on the motion of their sections: their terms in the derivatives K, C and M of a rod in motion.
 
 A force f and a moment c that depend on ṙ, ω, r̈ and ω̇ of their section do the work −Σ [δr; δθ]ᵀ [f; c] in the
 residual. Their derivative with the pose of the section at fixed rates is in tangent.py; the variations of the rates are
@@ -26,18 +26,18 @@ from cosserat_casadi.rod.motion_tangent import MotionTangent
 from cosserat_casadi.rod.pose_load import LoadedSections
 
 Variation = tuple[Matrix | None, Matrix | None, Matrix | None]
-"""Derivatives of a rate with z, ż and z̈, 3k×columns each; None for one that is zero."""
+"""Derivatives of a rate by z, ż and z̈, 3k×columns each; None for a zero derivative."""
 
 
 def motion_matrices(tangent: MotionTangent, loads: Sequence[LoadedSections]) -> MotionMatrices:
-    """Share of inertia and of loads that depend on rates in ∂/∂z, ∂/∂ż and ∂/∂z̈ of the forces on z.
+    """Terms of inertia and of loads that depend on rates in ∂/∂z, ∂/∂ż and ∂/∂z̈ of the forces on z.
 
     They are in units of ``tangent.unit``.
     """
     total = tangent.matrices
     mass_damping = tangent.motion.rod.properties.mass_damping
     if mass_damping is not None:
-        # The rod's own inertia sees accelerations with a share of the velocities in them; loads do not.
+        # With damping by mass the rod's inertia takes r̈ + α ṙ as acceleration; loads take r̈.
         total = replace(total, damping=total.damping + mass_damping * total.mass)
     for load in loads:
         if load.load.kernel.rates:
@@ -76,7 +76,7 @@ class MotionLoad:
         """δr of the loaded sections with its rates, 3k×columns, m."""
         orders = [self.load.moved(matrix) for matrix in self.tangent.section_tangent.orders]
         if self.tangent.floating:
-            # A shift of the base moves all sections alike.
+            # A shift of the base moves all sections equally.
             alike = ca.kron(ca.DM.eye(3), ca.DM.ones(self.load.count, 1))
             before = ca.DM(alike.shape[0], orders[0].shape[1] - 3)
             orders[0] = orders[0] + ca.horzcat(before, alike)
@@ -103,6 +103,6 @@ class MotionLoad:
         return by_position, 2 * theta.rate - spin @ theta.value, theta.value
 
     def _undamped(self, acceleration: Matrix, velocity: Matrix) -> Matrix:
-        """Variation of an acceleration, from variations of r̈ + α ṙ, which inertia sees, and of the velocity ṙ."""
+        """Variation of the acceleration r̈, from the variations of r̈ + α ṙ and of the velocity ṙ."""
         mass_damping = self.tangent.motion.rod.properties.mass_damping
         return acceleration if mass_damping is None else acceleration - mass_damping * velocity

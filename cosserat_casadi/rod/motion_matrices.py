@@ -1,4 +1,4 @@
-"""Derivatives of forces with coordinates, their rates and their accelerations, and how they change with coordinates."""
+"""Derivatives of forces by coordinates, their rates and accelerations, and their change of coordinates."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ class Jet:
 
 @dataclass(frozen=True)
 class MotionMatrices:
-    """Derivatives of forces with coordinates z, ż and z̈.
+    """Derivatives of forces by coordinates z, rates ż and accelerations z̈.
 
     Attributes:
-        stiffness: with z, n×n.
-        damping: with ż, n×n.
-        mass: with z̈, n×n.
+        stiffness: derivative by z, n×n.
+        damping: derivative by ż, n×n.
+        mass: derivative by z̈, n×n.
     """
 
     stiffness: Matrix
@@ -41,7 +41,7 @@ class MotionMatrices:
         return self.stiffness, self.damping, self.mass
 
     def along(self, jet: Jet) -> MotionMatrices:
-        """These matrices in other coordinates u with δz = P δu, given the jet of P, n×k; forces at fixed z̈ left out.
+        """These matrices in coordinates u with δz = P δu, from the jet of P, n×k, without ∂Pᵀ/∂u times the forces.
 
         The second derivative of y is Y(P ü + 2 Ṗ u̇ + P̈ u): each order of the jet meets the one above.
         """

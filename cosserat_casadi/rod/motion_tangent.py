@@ -1,12 +1,12 @@
-"""Derivatives of the inertia of a rod with its coordinates, their rates and their accelerations: K, C and M.
+"""Derivatives of the inertia of a rod by its coordinates, their rates and their accelerations: K, C and M.
 
 A vector y of the section, its position or one of its directors, has δy = Y δq with Y the known field of tangent.py.
 Along a motion ÿ = Y q̈ + Ẏ q̇, and so
 
     ∂ÿ/∂q̈ = Y        ∂ÿ/∂q̇ = 2 Ẏ        ∂ÿ/∂q = Ÿ,
 
-the last because differentiating in time and with q commute. The sweeps of Y carry their first and second rates along:
-with A of an interval, δθ has the rates Σ Ȧ and Σ Ä. The inertia force −μ ÿ does the work Σ Yᵀ μ ÿ on δq, whose
+the last because differentiating in time and with q commute. The sweeps of Y carry its first and second rates along:
+with A for an interval, δθ has the rates Σ Ȧ and Σ Ä. The inertia force −μ ÿ does the work Σ Yᵀ μ ÿ on δq, whose
 derivative at fixed ÿ is as for a dead load and is computed in tangent.py; this module adds the other derivatives. For
 directors they are collected in three 3×3 matrices a node: with δd = δθ × d
 
@@ -36,7 +36,7 @@ from cosserat_casadi.rod.rod_motion import RodMotion, motion_kernels
 from cosserat_casadi.rod.tangent import Tangent
 
 ORDERS = 3
-"""Derivatives with z, with ż and with z̈."""
+"""Derivatives by z, by ż and by z̈."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class MotionTangent:
 
     Columns: the n strain coordinates; with a floating base then three turns and three shifts of the base. Coordinates
         that turn sections (curvatures, torsion, turns of the base) stand apart from linear strains and shifts, which
-        have no δθ. Sections that nothing turns, the base of a rod that does not float, have no rows in δθ.
+        have no δθ. Sections that cannot turn, such as the base of a rod that does not float, have no rows in δθ.
 
     Attributes:
         tangent: variations of the rod's fields at rest.
@@ -66,7 +66,7 @@ class MotionTangent:
 
     @cached_property
     def matrices(self) -> MotionMatrices:
-        """Share of inertia in ∂/∂z, ∂/∂ż and ∂/∂z̈ of the forces on z beside frozen wrenches, in units of ``unit``.
+        """Terms of inertia in ∂/∂z, ∂/∂ż and ∂/∂z̈ of the forces on z, without frozen wrenches, in units of ``unit``.
 
         The forces are minus the virtual work of the inertia: the rows of the residual, and minus the moment about the
         base and the force on it.
@@ -75,7 +75,7 @@ class MotionTangent:
 
     @cached_property
     def rotation(self) -> Jet:
-        """δθ at the nodes that turn with its rates, 3m×turning columns, rad."""
+        """δθ at the m nodes that turn, with its rates, 3m×turning columns, rad."""
         orders = [self._at_turning_nodes(order) for order in self._section_rotations]
         if not self.floating:
             return Jet(*orders)
@@ -87,20 +87,20 @@ class MotionTangent:
 
     @cached_property
     def _rotations(self) -> Matrix:
-        """The rates of δθ from the highest order on beneath each other, 9m×turning columns."""
+        """Stack of δθ̈, δθ̇ and δθ, 9m×turning columns."""
         theta = self.rotation
         return ca.vertcat(theta.acceleration, theta.rate, theta.value)
 
     @cached_property
     def _nodes(self) -> list[int]:
-        """Nodes whose sections turn."""
+        """Nodes with sections that turn."""
         section_of_node = self.tangent.rod.grid.section_of_node
         if self.floating:
             return list(range(len(section_of_node)))
         return np.flatnonzero(section_of_node > 0).tolist()
 
     def _at_turning_nodes(self, sections: Matrix) -> Matrix:
-        """Variations at the nodes that turn, 3m×k, from variations of the sections beyond the base; stacked."""
+        """Stacked variations at the nodes that turn, 3m×k, from variations of the sections beyond the base."""
         nodes = self.tangent.rod.grid.size
         components = ca.vertsplit(self.tangent.at_nodes(sections), nodes)
         if len(self._nodes) == nodes:
@@ -109,13 +109,12 @@ class MotionTangent:
 
     # Positions, r = p + S t: with δt = δθ × t on the turning columns, and the stretch on the others.
 
-    # What depends on z̈, ż and z by an operator on Θ̈, Θ̇ and Θ stands beneath each other, stiffness, damping and mass:
-    # one product has long sums, and gives all three.
+    # Operators on Θ̈, Θ̇ and Θ for stiffness, damping and mass are stacked: one product with long sums gives all three.
 
     @cached_property
     def _accelerations(self) -> Matrix:
-        """Derivatives of ẗ at the nodes that turn with z, ż and z̈, 9m×turning columns: δt = δθ × t."""
-        # The transpose of a hat is its negative.
+        """Derivatives of ẗ by z, ż and z̈ at the nodes that turn, 9m×turning columns: δt = δθ × t."""
+        # A hat matrix is antisymmetric.
         t, t_rate, t_acceleration = (hat_operator(field[:, self._nodes]).T for field in self._tangents)
         return _operators(t, 2 * t_rate, t_acceleration) @ self._rotations
 
@@ -129,7 +128,7 @@ class MotionTangent:
     def _stretch(self) -> MotionMatrices | None:
         """Derivatives of ẗ at all nodes by linear strains: ℓ d δΓ along directors that turn; None without such strains.
 
-        A floating base adds a row to each component, and its shift as columns.
+        A floating base adds a row to each component, and columns for its shift.
         """
         rod = self.tangent.rod
         # By z, by ż and by z̈.
@@ -161,7 +160,7 @@ class MotionTangent:
     def _gram(self) -> Numbers:
         """Sᵀ μ S of one component, where S integrates tangents, and with a floating base adds its shift.
 
-        It is in units of :attr:`_mass`, so that uniform rods of any length and density have the same matrix.
+        It is in units of :attr:`_mass`, so that all uniform rods, of any length and density, have the same matrix.
         """
         rod = self.tangent.rod
         integrate = rod.grid.integration_matrix
@@ -181,29 +180,30 @@ class MotionTangent:
 
     @property
     def _mass(self) -> float:
-        """Mass that the rod has if all of it is as its heaviest section, over the unit of the forces, kg/J."""
+        """Mass of a uniform rod with the heaviest section of this rod, over the unit of the forces, kg/J."""
         return self.tangent.rod.length * self._largest_mass / self.unit
 
     @property
     def _largest_mass(self) -> float:
-        """Largest mass of a node, kg/m; 1 for a rod without mass, and where masses are expressions."""
+        """Largest mass per length of a node, kg/m; 1 for a rod without mass, or with masses that are expressions."""
         mass = self._node_mass
         if is_symbolic(mass):
             return 1.0
         return float(known(mass).max()) or 1.0
 
     def _pulled(self, rows: list[int] | None, columns: list[int] | None, fields: Matrix) -> Matrix:
-        """Some rows and columns of the Gram matrix times each component of fields that stand beneath each other."""
+        """Some rows and columns of the Gram matrix times each component of stacked fields."""
         part = self._gram
         if rows is not None:
             part = part[rows, :]
         if columns is not None:
             part = part[:, columns]
         gram = as_matrix(part)
-        # Transposed: the printer's sums then run along the columns of the unknowns, as in the products around this one.
+        # Transposed, so that sums in generated C run along the columns of the unknowns, as in the neighbouring
+        # products.
         return ca.horzcat(*[component @ gram.T for component in ca.horzsplit(fields.T, gram.shape[1])]).T
 
-    # Variations at all nodes, in the order of the coordinates: loads that depend on rates act anywhere.
+    # Variations at all nodes, in the order of the coordinates, for loads that depend on rates and act anywhere.
 
     @cached_property
     def section_rotation(self) -> Jet:
@@ -227,28 +227,28 @@ class MotionTangent:
 
     @property
     def _other_count(self) -> int:
-        """Number of the columns that turn nothing."""
+        """Number of columns of coordinates that turn nothing."""
         return 0 if self._stretch is None else int(self._stretch.mass.shape[1])
 
     def _at_all_nodes(self, rows: Matrix) -> Matrix:
-        """Rows of the nodes that turn among rows of all nodes, 3M×k, zero at nodes that do not turn."""
+        """Rows of all nodes from rows of the nodes that turn, 3M×k; rows of other nodes are zero."""
         count = len(self._nodes)
         pattern = ca.Sparsity.triplet(self.tangent.rod.grid.size, count, self._nodes, list(range(count)))
         places = ca.DM(pattern, 1.0)
         return ca.kron(ca.DM.eye(3), places) @ rows
 
     def _without_shift_rows(self, rows: Matrix) -> Matrix:
-        """Rows of the nodes alone, where a floating base has added one for its shift to each component."""
+        """Rows of the nodes, without the row of the shift that a floating base adds to each component."""
         if not self.floating:
             return rows
         nodes = self.tangent.rod.grid.size
         return ca.vertcat(*[component[:nodes, :] for component in ca.vertsplit(rows, nodes + 1)])
 
-    # The parts of the matrices by rows and columns: turning ones, then the others.
+    # Parts of the matrices by rows and columns: turning coordinates first, then the others.
 
     @cached_property
     def _wrenches(self) -> Matrix:
-        """Wrenches on the sections that turn, of which Θᵀ makes forces, by the turning columns, 9m×turning columns."""
+        """Wrenches on the sections that turn by the turning columns, 9m×turning columns; Θᵀ turns them into forces."""
         forces = self._pulled(self._nodes, self._nodes, self._accelerations)
         levers = ca.diagcat(*[self._levers] * ORDERS)
         if not self.inertia.masses.second_moments:
@@ -257,7 +257,7 @@ class MotionTangent:
 
     @cached_property
     def _levers(self) -> Matrix:
-        """Moments of forces on the tangents of the sections that turn, forces in units of :attr:`_mass`."""
+        """Operator from forces on the tangents, in units of :attr:`_mass`, to moments on the sections that turn."""
         return hat_operator(self._mass * self.motion.shape.tangent[:, self._nodes])
 
     @cached_property
@@ -265,7 +265,7 @@ class MotionTangent:
         """The matrices, turning rows and columns first."""
         rows = 3 * len(self._nodes)
         ratio = self.motion.shape.ratio
-        # A longer rod has more mass.
+        # The mass grows with the length.
         turned = (self.rotation.value if ratio is None else ratio * self.rotation.value).T
         every = ca.diagcat(*[turned] * ORDERS) @ self._wrenches
         count = turned.shape[0]
@@ -284,7 +284,7 @@ class MotionTangent:
         return MotionMatrices(*(ca.blockcat([[one, two], [three, four]]) for one, two, three, four in blocks))
 
     def _rows_of(self, others: MotionMatrices, nodes: list[int] | None) -> Matrix:
-        """Rows of the linear strains and the shift, as they pull at accelerations of some nodes, or of all."""
+        """Rows of the linear strains and the shift, from accelerations of some nodes, or of all."""
         return (self._mass * self.inertia.ratio) * self._pulled(nodes, None, others.mass).T
 
     def _ordered(self, matrix: Matrix) -> Matrix:
@@ -292,7 +292,7 @@ class MotionTangent:
         return matrix[self._order, self._order] if self.floating else matrix
 
     def _ordered_columns(self, matrix: Matrix) -> Matrix:
-        """A matrix whose columns are in the order of the coordinates."""
+        """A matrix with columns in the order of the coordinates."""
         return matrix[:, self._order] if self.floating else matrix
 
     @cached_property
@@ -308,7 +308,7 @@ class MotionTangent:
 
     @cached_property
     def _section_rotations(self) -> tuple[Matrix, Matrix, Matrix]:
-        """δθ of the sections beyond the base and its rates with the angular coordinates, (3·intervals)×n_a each."""
+        """δθ of the sections beyond the base by the angular coordinates, with its rates, (3·intervals)×n_a each."""
         rod = self.tangent.rod
         if not self.tangent.kernels.axes:
             none = ca.DM(3 * self.tangent.intervals, self.tangent.angular_size)
@@ -327,7 +327,7 @@ class MotionTangent:
         return self.tangent.section_rotation, first, second
 
     def _symbolic_gram(self, integrate: FloatArray, mass: Matrix) -> Matrix:
-        """Sᵀ μ S where the masses are expressions: linear in the mass of each node."""
+        """Sᵀ μ S for masses that are expressions; it is linear in the mass of each node."""
         weights = self.tangent.rod.grid.weights
         weighted = weights[:, None, None] * integrate[:, :, None] * integrate[:, None, :]
         columns = integrate.shape[1]
@@ -354,9 +354,9 @@ class MotionTangent:
 
 
 def _operators(on_acceleration: Matrix, on_rate: Matrix, on_value: Matrix) -> Matrix:
-    """Operator on Θ̈, Θ̇ and Θ beneath each other whose rows are derivatives with z, with ż and with z̈.
+    """Operator on the stack of Θ̈, Θ̇ and Θ with rows of derivatives by z, by ż and by z̈.
 
-    With y = A Θ̈ + B Θ̇ + C Θ along δz, that is also the derivative with z; with ż it is 2 A Θ̇ + B Θ, with z̈ A Θ.
+    The derivative by z is A Θ̈ + B Θ̇ + C Θ, by ż it is 2 A Θ̇ + B Θ, by z̈ it is A Θ.
     """
     none = ca.DM(*on_acceleration.shape)
     rows = [

@@ -1,4 +1,4 @@
-"""Sections of a rod at any places of its elements: fields at its nodes are interpolated to them."""
+"""Sections of a rod anywhere in its elements; fields at its nodes are interpolated to them."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from cosserat_casadi.rod.strain import DiscreteRod
 
 @dataclass(frozen=True)
 class PlacedSections:
-    """Sections of a rod; where parameters move its elements, they stay where they are in their elements.
+    """Sections of a rod; if parameters move its elements, they move along and keep their place in the element.
 
     Attributes:
         rod: the rod.
-        coordinates: places in the coordinate of the grid, shape (k,).
+        coordinates: coordinates on the grid, shape (k,).
     """
 
     rod: DiscreteRod
@@ -39,7 +39,7 @@ class PlacedSections:
 
     @cached_property
     def interpolation(self) -> ca.DM:
-        """Matrix :attr:`to_sections`, k×M, without zeros: a section reads the nodes of its element."""
+        """Sparse matrix :attr:`to_sections`, k×M: a section depends on the nodes of its element alone."""
         return sparse(self.to_sections)
 
     @cached_property
@@ -49,22 +49,22 @@ class PlacedSections:
 
     @cached_property
     def rates(self) -> Numbers | None:
-        """Rate dX of the rod's abscissa at the sections, shape (k,); None where it is one."""
+        """Derivative of the rod's abscissa by the grid's coordinate at the sections, shape (k,); None if it is one."""
         return self.rod.grid.rates_in(self.elements)
 
 
 @dataclass(frozen=True)
 class SummedSections:
-    """Sections of each element at which a load per length is summed: Gauss points of equal parts of it.
+    """Sections of each element at which a load per length is summed: Gauss points of equal parts of the element.
 
-    A load that comes and goes within an element is summed in the middle of equal parts more exactly than by nodes as
-    many. One that ends with an element takes more points a part. One along all of an element is summed by Gauss points
-    of the element as exactly as by nodes.
+    For a load on a part of an element the midpoints of equal parts are more exact than as many nodes. A load that ends
+    with the element needs more points in each part. For a load along the whole element Gauss points of the element are
+    as exact as nodes.
 
     Attributes:
         rod: the rod.
-        counts: sections of each element.
-        points: Gauss points of each part; 0 where an element is one part.
+        counts: number of sections of each element.
+        points: number of Gauss points of each part; 0 for an element that is one part.
     """
 
     rod: DiscreteRod
@@ -72,7 +72,7 @@ class SummedSections:
     points: int = 1
 
     def finer(self, factor: int) -> SummedSections:
-        """Sections of the same kind, ``factor`` times as many in each element."""
+        """Sections with ``factor`` times as many in each element."""
         return replace(self, counts=tuple(factor * count for count in self.counts))
 
     @cached_property
@@ -86,7 +86,7 @@ class SummedSections:
         return PlacedSections(self.rod, np.concatenate(places))
 
     def _rule(self, count: int) -> tuple[FloatArray, FloatArray]:
-        """Places in an element from 0 to 1, and the share of it that each stands for, shape (count,) each."""
+        """Coordinates in an element from 0 to 1, and weights, shares of the element, shape (count,) each."""
         points, weights = gauss_legendre(self.points or count)
         parts = count // len(points)
         places = np.arange(parts)[:, None] + (points + 1) / 2
@@ -99,21 +99,21 @@ class SummedSections:
 
     @cached_property
     def lengths(self) -> Numbers:
-        """Length of rod that each section stands for, shape (k,), m."""
+        """Length of rod that each section represents in sums, shape (k,), m."""
         return each_times(self._reference_lengths, self.placed.rates)
 
     def at_sections(self, field: Matrix) -> Matrix:
-        """A field at the nodes, m×M, at the sections, m×k."""
+        """Values at the sections, m×k, of a field at the nodes, m×M."""
         if self.points != 1:
             return self._by_element(field, ca.MX(self._from_nodes))
         return field @ self.placed.interpolation.T
 
     def at_nodes(self, loads: Matrix) -> Matrix:
-        """Loads per length at the sections, m×k, as loads at the nodes that do the same work, m×M."""
-        # Lengths of sections and of nodes are drawn out alike where parameters move elements.
+        """Loads at the nodes, m×M, that do the same work as loads per length at the sections, m×k."""
+        # Moved elements stretch the lengths of sections and of nodes by one factor, which cancels.
         lengths, of_nodes = self._reference_lengths, self.rod.reference_lengths
         if self.points != 1:
-            # The block is in C once, and turned there.
+            # The block stands in C once and is transposed there.
             block = ca.MX(self._from_nodes)
             rows, columns = block.shape
             scale = ca.MX(ca.DM(lengths[:columns])) @ ca.MX(ca.DM(1 / of_nodes[:rows]).T)
@@ -122,12 +122,12 @@ class SummedSections:
 
     @property
     def _from_nodes(self) -> ca.DM:
-        """Matrix from values at the nodes of an element to those at its sections, each of which has as many."""
+        """Matrix from the nodes of an element to its sections, if all elements have equally many."""
         elements = self.rod.grid.elements
         return ca.DM(self.placed.to_sections[: self.size // elements, : self.rod.grid.size // elements].T)
 
     def _by_element(self, field: Matrix, block: ca.MX) -> Matrix:
-        """Product of the parts of a field in each element with the block that all of them have."""
+        """Product of the part of a field in each element with the common block."""
         return ca.horzcat(*[part @ block for part in ca.horzsplit(field, block.shape[0])])
 
     @cached_property

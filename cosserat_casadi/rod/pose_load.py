@@ -1,8 +1,8 @@
 """Wrenches on a rod that depend on the pose of their sections: force, moment and their derivatives at a known shape.
 
-At a known shape such a wrench is a dead one, and the sweeps of statics.py and tangent.py take it as that. Its change
-with its section is a term of the Jacobian: with δr and δθ of the section, f and c vary by the 6×6 derivative of the
-kernel, and the residual −Σ (δrᵀ f + δθᵀ c) by −Σ [δr; δθ]ᵀ [δf; δc], docs/theory.md section 7.
+At a known shape such a wrench is a dead wrench for the sweeps of statics.py and tangent.py. Its change with its section
+is a further term of the Jacobian: with δr and δθ of the section, f and c vary by the 6×6 derivative of the kernel, and
+the residual −Σ (δrᵀ f + δθᵀ c) by −Σ [δr; δθ]ᵀ [δf; δc], docs/theory.md section 7.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, Wrench, WrenchAt
 
 FAR_FEWER = 0.4
-"""Share of products below which other ones are taken, that generated C does not write as loops over columns."""
+"""Ratio of products below which a formula with fewer products is taken, although its C has no loops over columns."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class LoadedSections:
 
     @cached_property
     def nodes(self) -> list[int]:
-        """Nodes of the loaded sections: one node, or all nodes of the span."""
+        """Indices of the nodes of the loaded sections: one node, or all nodes of the span."""
         assert self.load.sections is None, "they lie between nodes"
         grid = self.shape.rod.grid
         at = self.load.at
@@ -60,13 +60,13 @@ class LoadedSections:
         return self.load.sections is None and len(self.nodes) == self.shape.rod.grid.size
 
     def at_sections(self, field: Matrix) -> Matrix:
-        """A field at the nodes, m×M, at the loaded sections, m×k."""
+        """Values at the loaded sections, m×k, of a field at the nodes, m×M."""
         if self.load.sections is not None:
             return self.load.sections.at_sections(field)
         return field if self.everywhere else field[:, self.nodes]
 
     def varied_at_sections(self, variation: Matrix) -> Matrix:
-        """Variations at the nodes, stacked component by component, mM×n, at the loaded sections, mk×n."""
+        """Variations at the loaded sections, mk×n, from variations at the nodes, mM×n, stacked by component."""
         parts = ca.vertsplit(variation, self.shape.rod.grid.size)
         if self.load.sections is not None:
             return ca.vertcat(*[self.load.sections.placed.interpolation @ part for part in parts])
@@ -83,7 +83,7 @@ class LoadedSections:
 
     @cached_property
     def weights(self) -> Numbers:
-        """Weights of the sections in sums, shape (k,): metres of rod, or one."""
+        """Weights of the sections in sums, shape (k,): lengths of rod in m, or one."""
         if self.load.at is not None:
             return np.ones(1)
         if self.load.sections is not None:
@@ -99,24 +99,24 @@ class LoadedSections:
 
     @cached_property
     def force(self) -> Matrix | None:
-        """Forces on the sections, 3×k, N or N/m; None where the load has none."""
+        """Forces on the sections, 3×k, N or N/m; None for a load without force."""
         force, _ = self._wrench
         return self._scaled(force)
 
     @cached_property
     def moment(self) -> Matrix | None:
-        """Moments on the sections, 3×k, N m or N; None where the load has none."""
+        """Moments on the sections, 3×k, N m or N; None for a load without moment."""
         _, moment = self._wrench
         return self._scaled(moment)
 
     @cached_property
     def frozen(self) -> Wrench:
-        """The wrench at this shape as one of fixed direction."""
+        """The wrench at this shape as a dead wrench."""
         return self.dead(self.force, self.moment)
 
     @cached_property
     def energy(self) -> Matrix | None:
-        """Energy of the load, 1×1, J; None where it has none."""
+        """Energy of the load, 1×1, J; None for a load without energy."""
         function = self.load.kernel.energy
         if function is None:
             return None
@@ -149,7 +149,7 @@ class LoadedSections:
         return ca.diag(weights) @ variation
 
     def changed(self, variation: Matrix) -> Wrench:
-        """A wrench on the same sections whose forces and moments are a variation of this load's, 6k×1."""
+        """A dead wrench on these sections with a variation of forces and moments, 6k×1, as its values."""
         count = self.count
         forces, moments = ca.vertsplit(variation, 3 * count)
         force = unstack(forces, 3)
@@ -164,7 +164,7 @@ class LoadedSections:
         return LineWrench(self._at_all_nodes(force), self._at_all_nodes(moment), None, follower=False)
 
     def _at_all_nodes(self, part: Matrix | None) -> Matrix | None:
-        """A load per length at the loaded sections, at all nodes: nothing is stored where nothing acts."""
+        """Load at all nodes from a load per length at the loaded sections; unloaded nodes store no entry."""
         if part is None or self.everywhere:
             return part
         if self.load.sections is not None:
@@ -175,7 +175,7 @@ class LoadedSections:
 
     @cached_property
     def drag(self) -> tuple[Matrix, Matrix]:
-        """Forces and moments on the sections less those at rest, 3×k each."""
+        """Forces and moments on the sections minus the values at rest, 3×k each."""
         force, moment = (self.load.scale * part for part in self._mapped(self.load.kernel.drag))
         return force, moment
 
@@ -195,7 +195,7 @@ class LoadedSections:
 
     def _mapped(self, function: ca.Function) -> list[Matrix]:
         """Results of a function of the kernel at all sections, side by side."""
-        # Base, parameters and scale are the same for all sections; CasADi's map wants them side by side.
+        # Base, parameters and scale are equal for all sections; CasADi's map needs them side by side.
         count = self.count
         rotations = ca.DM(3, 3 * count) if self.load.sections is not None else self.shape.rotations_at(self.nodes)
         alike = [self.load.base_position, self.load.base_rotation, self.load.parameters]
@@ -207,7 +207,7 @@ class LoadedSections:
 
 @dataclass(frozen=True)
 class StiffSections:
-    """Sections of a rod with all loads on them that depend on their poses.
+    """Sections of a rod with all pose-dependent loads on them.
 
     Attributes:
         loads: the loads, on the same sections.
@@ -227,7 +227,7 @@ class StiffSections:
 
     @property
     def is_cheaper_at_nodes(self) -> bool:
-        """Whether the stiffness of sections between nodes takes far fewer products when it is brought to the nodes."""
+        """Whether the stiffness of sections between nodes takes far fewer products if written for the nodes."""
         sections = self.sections
         if sections.load.sections is None:
             return False
@@ -239,7 +239,7 @@ class StiffSections:
 
     @cached_property
     def stiffness_of_nodes(self) -> Matrix:
-        """Operator from δr of the nodes to the weighted δf of sections between them, brought to the nodes, 3M×3M."""
+        """Operator from δr of the nodes to weighted δf at the nodes, for sections between nodes, 3M×3M."""
         sections = self.sections
         assert sections.load.sections is not None, "they lie between nodes"
         of_positions = self.stiffness[: 3 * sections.count, : 3 * sections.count]
@@ -248,10 +248,10 @@ class StiffSections:
 
     @cached_property
     def with_base(self) -> tuple[Matrix, Matrix]:
-        """[δf; δc] with a shift (m) and with a turn (rad) of the base, base axes, 6k×3 each.
+        """[δf; δc] by a shift (m) and by a turn (rad) of the base, base axes, 6k×3 each.
 
-        Moving the base moves every section, δr = δp + δφ × r and δθ = δφ. That f and c, fixed in the world, turn
-        back in the axes of the base is left to the frozen wrench.
+        Moving the base moves every section, δr = δp + δφ × r and δθ = δφ. The frozen wrench has the other part: f and
+        c, fixed in the world, turn back in the axes of the base.
         """
         count = self.sections.count
         # δφ × r at every section.
@@ -262,12 +262,12 @@ class StiffSections:
         return self.stiffness @ shift, self.stiffness @ turn
 
     def changed_by_base(self, motion: int, axis: int) -> Wrench:
-        """Change of all loads with a shift of the base along one of its axes (motion 0), or a turn about it (1)."""
+        """Change of all loads by a shift of the base along one of its axes (motion 0), or a turn about it (1)."""
         return self.sections.changed(self.with_base[motion][:, axis])
 
 
 def by_sections(loads: Sequence[LoadedSections]) -> list[StiffSections]:
-    """Loads that depend on poses, together with those on the same sections; loads at one section come last."""
+    """Pose-dependent loads, grouped by their sections; loads at one section come last."""
     groups: dict[Hashable, list[LoadedSections]] = defaultdict(list)
     for load in sorted(loads, key=lambda load: load.load.at is not None):
         places = tuple(load.nodes) if load.load.sections is None else id(load.load.sections)

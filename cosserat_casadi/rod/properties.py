@@ -34,13 +34,13 @@ Field = Callable[[Numbers], Numbers]
 
 @dataclass(frozen=True)
 class EnergyBeyondHooke:
-    """Elastic energy of a section beyond its Hooke tensor's: the law of a material that is not linear.
+    """Elastic energy of a section beyond its Hooke tensor's: the law of a nonlinear material.
 
     Attributes:
-        density: change of the strains ξ − ξ⁰, 6×1, and data, d×1 ↦ energy per length, 1×1, J/m; zero with its gradient
-            at no change.
+        density: change of the strains ξ − ξ⁰, 6×1, and data, d×1 ↦ energy per length, 1×1, J/m; energy and gradient are
+            zero at zero change.
         data: abscissae (k,) ↦ numbers that the density depends on (k, d), a row for each abscissa.
-        margin: the same arguments ↦ 1×1, not negative where the law is known; None where it is known everywhere.
+        margin: these arguments ↦ 1×1, negative outside of the law; None for a law without limits.
     """
 
     density: Callable[[Matrix, Matrix], Matrix]
@@ -50,7 +50,7 @@ class EnergyBeyondHooke:
 
 @dataclass(frozen=True)
 class FixedMass:
-    """A mass that is fixed to a section, with its centre there and round about the tangent.
+    """A mass that is fixed to a section, centred on it and rotationally symmetric about the tangent.
 
     Attributes:
         at: abscissa X of the section, an element end of the rod's grid.
@@ -67,10 +67,10 @@ class FixedMass:
 
 @dataclass(frozen=True)
 class MaxwellBranch:
-    """A spring and a dashpot in series beside the elasticity of a rod.
+    """A spring and a dashpot in series, in parallel with the elasticity of a rod.
 
     Attributes:
-        shares: stiffness of the spring over the instantaneous one of the rod, of each of the six strains.
+        shares: stiffness of the spring over the instantaneous stiffness of the rod, for each of the six strains.
         time: relaxation time, s.
     """
 
@@ -82,7 +82,7 @@ class MaxwellBranch:
 class RodProperties:
     """A rod in its unloaded state.
 
-    The fields along the rod are functions of abscissae, which are numbers, or expressions where elements move. They
+    The fields along the rod are functions of abscissae, which are numbers, or expressions if elements move. They
     are arrays, or expressions of parameters with one row for each abscissa; a field that is the same all along the rod
     may give one row for all.
 
@@ -93,22 +93,22 @@ class RodProperties:
         basis: "legendre" or "chebyshev", the polynomials of report (2.4).
         hooke: abscissae (k,) ↦ diagonal of the Hooke tensor (k, 6), N m² and N; rows of strains that are not
             admitted are not read.
-        beyond_hooke: elastic energy that the Hooke tensor does not hold; None of a rod that is linear.
+        beyond_hooke: elastic energy beyond the Hooke tensor's; None for a linear rod.
         intrinsic: ξ⁰ as six tuples of Legendre coefficients in 2X − 1: three of 1/m, three without unit.
-        linear_density: abscissae (k,) ↦ mass per length (k,), kg/m; None where the rod has no mass.
+        linear_density: abscissae (k,) ↦ mass per length (k,), kg/m; None for a rod without mass.
         rotary_inertia: abscissae (k,) ↦ moments of inertia per length about section x, y and tangent (k, 3), kg m;
             None where the rod has none.
         damping: abscissae (k,) ↦ diagonal of the Kelvin–Voigt tensor Υ (k, 6), N m² s and N s, whose stress is Υ ξ̇;
             None where the rod has none. Rows of strains that are not admitted are not read.
-        branches: what its stress relaxes by.
-        mass_damping: α of forces −α times the momentum of the sections, 1/s; None where there are none.
-        area: abscissae (k,) ↦ area of the sections (k,), m²; None where the rod is given by its stiffness.
-        diameter: abscissae (k,) ↦ outer diameter of round sections (k,), m; None where they are not round or not known.
+        branches: Maxwell branches, by which its stress relaxes.
+        mass_damping: α of forces −α times the momentum of the sections, 1/s; None without such damping.
+        area: abscissae (k,) ↦ area of the sections (k,), m²; None for a rod that is given by its stiffness.
+        diameter: abscissae (k,) ↦ outer diameter of round sections (k,), m; None for other or unknown sections.
         plane_sections: whether rotary inertia belongs to plane sections: the polar moment is the sum of the other two.
-        ratio: length of the rod relative to ``length``, 1×1; None where it is 1 for good.
-        nominal: the rod with the numbers that scale the equations; None where this record holds them itself.
+        ratio: length of the rod relative to ``length``, 1×1; None if it is always 1.
+        nominal: the rod with the numbers that scale the equations; None if it is this record.
         fixed_masses: masses that are fixed to sections.
-        largest_unit: EI that scales the equations at most, N m²; infinite but for a rod far stiffer than others.
+        largest_unit: upper bound on the EI that scales the equations, N m²; finite for a rod far stiffer than others.
     """
 
     name: str
@@ -141,12 +141,12 @@ class RodProperties:
 
     @staticmethod
     def _along(components: tuple[tuple[Scalar, ...], ...], X: Numbers) -> Numbers:
-        """Legendre series at abscissae, one column a component."""
+        """Values of Legendre series at abscissae, one column for each component."""
         count = X.shape[0]
         columns: list[Numbers] = []
         for coefficients in components:
             if len(coefficients) == 1 and not any_symbolic(coefficients):
-                # A constant gives one number for all abscissae.
+                # A constant series gives one number for all abscissae.
                 columns.append(np.full(count, coefficients[0]))
             elif any_symbolic(coefficients) or is_symbolic(X):
                 columns.append(as_matrix(legendre_table(len(coefficients), X)) @ as_matrix(as_vector(coefficients)))
@@ -167,8 +167,8 @@ class RodProperties:
     def bending_stiffness(self) -> float:
         """EI that makes the model dimensionless, N m²: mean of the smallest bending or torsion stiffness.
 
-        A rod that admits neither takes H ℓ² of its softest linear strain. One that is far stiffer than another of its
-        scene is scaled by that.
+        A rod that admits neither takes H ℓ² of its softest linear strain. A rod that is far stiffer than another one of
+        its scene takes at most :attr:`largest_unit`.
         """
         mean = self.mean_hooke
         angular = [mean[i] for i in self.admitted if i < 3]
@@ -178,7 +178,7 @@ class RodProperties:
 
     @cached_property
     def turning_axes(self) -> tuple[int, ...]:
-        """Local axes about which the rod can turn along its length, unloaded or not."""
+        """Local axes about which the rod turns along its length, by admitted or intrinsic curvature."""
         axes = {i for i in self.admitted if i < 3}
         for i, coefficients in enumerate(self.intrinsic[:3]):
             if not is_zero(coefficients):

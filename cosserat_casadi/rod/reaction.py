@@ -1,9 +1,9 @@
 """Wrench of a rod on its base and the derivatives of that wrench, for a rod whose base moves.
 
-A rod is written in the axes of its base. Motions of the base therefore do not appear in its equations, but for loads
-that know the world: when the base turns by δφ, a load of fixed direction turns by −δφ in the axes of the base. Loads
-that depend on poses vary besides, since all their sections move with the base. The equations of a rod are linear in
-the wrenches on it, so its residual and base wrench under the variations of the wrenches are their own variations.
+A rod is written in the axes of its base. Motions of the base therefore enter its equations only through loads that
+depend on the world: if the base turns by δφ, a load of fixed direction turns by −δφ in the axes of the base. Loads that
+depend on poses vary in addition, since all their sections move with the base. The equations of a rod are linear in the
+wrenches on it, so its residual and base wrench under the variations of the wrenches are their own variations.
 """
 
 from __future__ import annotations
@@ -25,16 +25,16 @@ from cosserat_casadi.rod.tangent import Tangent
 from cosserat_casadi.rod.wrenches import Wrench, WrenchAt
 
 Variation = tuple[Matrix, Matrix, Matrix]
-"""Derivatives of residual (n×3), base force and base moment (3×3 each) with a motion of the base along three axes."""
+"""Derivatives of residual (n×3), base force and base moment (3×3 each) by a motion of the base along three axes."""
 
 
 @dataclass(frozen=True)
 class Reaction:
-    """Variations of a rod's base wrench, and of its residual, when its base moves.
+    """Variations of a rod's base wrench and residual under motions of its base.
 
     Attributes:
         tangent: variations of the rod's fields.
-        dead: the wrenches on it whose direction is fixed in the world.
+        dead: wrenches on the rod with a direction that is fixed in the world.
     """
 
     tangent: Tangent
@@ -69,15 +69,15 @@ class Reaction:
                 turned = self.tangent.turned(wrench, wrench.moment)
                 moment = moment - self._resultant(turned, wrench)
         for stiff, change in self._changes:
-            # The δr × f of these are in the covector already, with the other frozen forces.
+            # The covector already has δr × f of these, as of the other frozen forces.
             forces, moments = ca.vertsplit(change, 3 * stiff.sections.count)
             moment = moment - _hat_row(stiff.sections.position) @ forces - _summed(moments, stiff.sections)
         return moment
 
     @cached_property
     def with_turn(self) -> Variation:
-        """Derivatives with a turn of the base, base axes, rad."""
-        # Pose-dependent wrenches turn back as dead ones do, and change with the motion of their sections besides.
+        """Derivatives by a turn of the base, base axes, rad."""
+        # Pose-dependent wrenches turn back as dead ones do, and in addition change with the motion of their sections.
         fixed = [*self.dead, *(load.frozen for load in self._statics.pose_loads)]
         variations = []
         for axis in range(3):
@@ -87,7 +87,7 @@ class Reaction:
 
     @cached_property
     def with_shift(self) -> Variation | None:
-        """Derivatives with a shift of the base, base axes, m; None where no load depends on where the rod is."""
+        """Derivatives by a shift of the base, base axes, m; None if no load depends on the position of the rod."""
         if not self._stiff_sections:
             return None
         changed = [[stiff.changed_by_base(0, axis) for stiff in self._stiff_sections] for axis in range(3)]
@@ -111,7 +111,7 @@ class Reaction:
         return [wrench for wrench in self._statics.fixed_wrenches if wrench.follower]
 
     def _side_by_side(self, variations: Sequence[Sequence[Wrench]]) -> Variation:
-        """Residual and base wrench under each of the variations of the wrenches, side by side."""
+        """Residual and base wrench under each variation of the wrenches, side by side."""
         residuals = []
         forces = []
         moments = []
@@ -142,7 +142,7 @@ class Reaction:
 
 
 def _summed(variation: Matrix, load: LoadedSections) -> Matrix:
-    """Sum over the sections of a load, 3×n, of variations that hold their weights, 3k×n."""
+    """Sum over the sections of a load, 3×n, of weighted variations, 3k×n."""
     over_sections = ca.DM.ones(1, load.count)
     sums = ca.kron(ca.DM.eye(3), over_sections)
     return sums @ variation
@@ -154,7 +154,7 @@ def _hat_row(field: Matrix) -> Matrix:
 
 
 def _turned_back(wrench: Wrench, axis: int) -> Wrench:
-    """Change of a wrench of fixed direction, as the base sees it, while the base turns about one of its axes."""
+    """Change, in base axes, of a wrench of fixed direction as the base turns about one of its axes."""
     parts = (wrench.force, wrench.moment)
     force, moment = (None if part is None else _cross_with_axis(part, axis) for part in parts)
     return replace(wrench, force=force, moment=moment)

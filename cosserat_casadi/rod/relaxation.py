@@ -1,4 +1,4 @@
-"""Stress of a rod that relaxes, generalised Maxwell: Λ = Σ c_i H e_i beside elastic and viscous stress.
+"""Relaxing stress of a rod, generalised Maxwell: Λ = Σ c_i H e_i in addition to elastic and viscous stress.
 
 A branch is a spring of stiffness c_i H in series with a dashpot of relaxation time τ_i. Its spring is stretched by
 e_i = τ_i ẇ_i, w_i the strain of the dashpot, so that ė_i = ξ̇ − ẇ_i is τ_i ẅ_i + ẇ_i = ξ̇: an equation of motion like
@@ -21,14 +21,14 @@ from cosserat_casadi.rod.viscosity import Viscosity
 
 @dataclass(frozen=True)
 class RelaxationMatrices:
-    """Derivatives of a rod's relaxing stress and of the equations of its branches, by strains q and flows w.
+    """Derivatives of a rod's relaxing force and of the equations of its branches, by strains q and flows w.
 
     Attributes:
-        force_by_rate: of the force with ẇ, n×nB, s.
-        by_strain: of the equations with q, nB×n, 1/s; zero unless the rod's length changes.
-        by_strain_rate: with q̇, nB×n.
-        by_rate: with ẇ, nB×nB.
-        by_acceleration: with ẅ, nB×nB, s.
+        force_by_rate: of the force by ẇ, n×nB, s.
+        by_strain: of the equations by q, nB×n, 1/s; zero unless the rod's length changes.
+        by_strain_rate: of the equations by q̇, nB×n.
+        by_rate: of the equations by ẇ, nB×nB.
+        by_acceleration: of the equations by ẅ, nB×nB, s.
     """
 
     force_by_rate: Matrix
@@ -44,7 +44,7 @@ class Relaxation:
 
     Attributes:
         rates: shape of the rod with the rates of its strains.
-        velocity: ẇ, strain rates of the dashpots in the coordinates of the strains, a branch a column, n×B, 1/s.
+        velocity: ẇ, strain rates of the dashpots in strain coordinates, one column for each branch, n×B, 1/s.
         acceleration: ẅ, n×B, 1/s².
     """
 
@@ -93,7 +93,7 @@ class Relaxation:
 
     @cached_property
     def lengthening_power(self) -> Matrix:
-        """Power on the change of the length alone, 1×1, W: rod that comes along brings its springs as they are."""
+        """Power on the change of the length alone, 1×1, W: material that joins brings its springs in their state."""
         shrinking = self.rates.shrinking
         return shrinking * (self.energy - self.rates.shape.rod.energy_unit * ca.dot(self.force, self.rates.shape.q))
 
@@ -113,7 +113,7 @@ class Relaxation:
 
     @property
     def _factors(self) -> Matrix:
-        """c_i of each coordinate, n×B: one of all coordinates of a strain, so that it commutes with K."""
+        """c_i of each coordinate, n×B; it is equal for all coordinates of a strain, so that it commutes with K."""
         rod = self.rates.shape.rod
         rows = []
         for component, columns in rod.columns.items():

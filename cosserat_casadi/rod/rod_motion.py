@@ -26,12 +26,12 @@ from cosserat_casadi.rod.transport import ARGUMENTS, IntervalKernels, interval_k
 
 @dataclass(frozen=True)
 class FrameMotion:
-    """Velocities and accelerations of a frame in the world, coordinates in the frame's own axes or the world's.
+    """Velocities and accelerations of a frame relative to the world, in axes of the frame or the world.
 
     Attributes:
-        velocity: of its origin, 3×1, m/s.
+        velocity: velocity of its origin, 3×1, m/s.
         angular_velocity: 3×1, rad/s.
-        acceleration: of its origin, 3×1, m/s².
+        acceleration: acceleration of its origin, 3×1, m/s².
         angular_acceleration: 3×1, rad/s².
     """
 
@@ -45,17 +45,17 @@ class FrameMotion:
             check_shape(rate, getattr(self, rate), 3, 1)
 
     def in_axes(self, axes_R_world: Matrix) -> FrameMotion:
-        """This motion with coordinates in other axes, which a rotation, 3×3, leads to."""
+        """This motion with coordinates in other axes; the argument is the rotation into these, 3×3."""
         return FrameMotion(*(axes_R_world @ getattr(self, rate) for rate in RATES))
 
     def at(self, arm: Matrix) -> FrameMotion:
-        """Motion of a point that is fixed to the frame, 3×1 from its origin, in the same axes."""
+        """Motion of a point that is fixed to the frame at an arm from its origin, 3×1, m, in the motion's axes."""
         added = cross(self.angular_velocity, arm)
         turned = cross(self.angular_acceleration, arm) + cross(self.angular_velocity, added)
         return replace(self, velocity=self.velocity + added, acceleration=self.acceleration + turned)
 
     def damped(self, rate: Scalar) -> FrameMotion:
-        """The motion with accelerations of which a share of the velocities is part: r̈ + α ṙ with α in 1/s."""
+        """The motion with r̈ + α ṙ in place of the accelerations, and ω̇ + α ω, with α in 1/s."""
         return replace(
             self,
             acceleration=self.acceleration + rate * self.velocity,
@@ -64,18 +64,18 @@ class FrameMotion:
 
 
 AT_REST = FrameMotion(ca.DM(3, 1), ca.DM(3, 1), ca.DM(3, 1), ca.DM(3, 1))
-"""A frame that does not move: zeros that store nothing, and cost nothing."""
+"""Motion of a frame at rest: sparse zeros, which cost nothing."""
 
 
 @dataclass(frozen=True)
 class StrainRates:
-    """Rates of a rod's strain coordinates, and of its length where that is free.
+    """Rates of a rod's strain coordinates, and of its length if it is free.
 
     Attributes:
         velocity: q̇, n×1, 1/s.
         acceleration: q̈, n×1, 1/s².
-        ratio_rate: rate of the length relative to the reference length, 1×1, 1/s; None where the length is fixed.
-        ratio_acceleration: its second derivative, 1×1, 1/s²; None where the length is fixed.
+        ratio_rate: rate of the length relative to the reference length, 1×1, 1/s; None for a fixed length.
+        ratio_acceleration: its second derivative, 1×1, 1/s²; None for a fixed length.
     """
 
     velocity: Matrix
@@ -84,7 +84,7 @@ class StrainRates:
     ratio_acceleration: Ratio = None
 
     def damped(self, rate: Scalar) -> StrainRates:
-        """The rates with q̈ + α q̇ in the place of q̈, and so for the ratio of the length, with α in 1/s."""
+        """The rates with q̈ + α q̇ in place of q̈, and the ratio of the length in this way too, with α in 1/s."""
         by_ratio = self.ratio_acceleration
         if self.ratio_rate is not None and by_ratio is not None:
             by_ratio = by_ratio + rate * self.ratio_rate
@@ -92,22 +92,22 @@ class StrainRates:
 
 
 NO_CHANGE = ca.DM(1, 1)
-"""Rate of a length that is fixed: it takes the intrinsic strain out of the rates of strains."""
+"""Ratio of lengths for rates of strains at fixed length: zero removes the intrinsic strain from the rates."""
 
 
 VELOCITIES = {"acceleration": "velocity", "angular_acceleration": "angular_velocity"}
-"""The velocity of which damping in proportion to mass adds a share to an acceleration."""
+"""Velocity that damping in proportion to mass adds to each acceleration, times α."""
 
 SPINS = ("angular_velocity", "angular_acceleration")
-"""Further arguments of a kernel of an interval in motion: of the section at which it begins."""
+"""Further arguments of a kernel of an interval in motion: ω and ω̇ of the section at which it begins."""
 
 
 @dataclass(frozen=True)
 class MotionKernels:
     """Functions of one interval in motion.
 
-    All take what the kernels of an interval at rest take of its turn, the Taylor coefficients of the turn with Ω and
-    the factors of the derivatives; the rates of the coefficients; and the rotation of the section at which it begins.
+    Their arguments are the Taylor coefficients of the turn, Ω and the factors of the derivatives, as for an interval at
+    rest, the rates of the coefficients, and the rotation of the section at which the interval begins.
     """
 
     intervals: IntervalKernels
@@ -123,7 +123,7 @@ class MotionKernels:
 
     @cached_property
     def variation(self) -> ca.Function:
-        """First and second rate of A, the δθ of the interval with its turn, in the axes of the base, 3×size each.
+        """First and second rate of A, the derivative of the interval's δθ by its turn, base axes, 3×size each.
 
         (turn, …, rotation, turn_rate, turn_acceleration, ω, α) ↦ (Ȧ, Ä), with ω and α of the section at which the
         interval begins: A = X J with J = ∂Ω/∂turn and X = R T, so that Ẋ = ω^ X + R Ṫ and
@@ -155,7 +155,7 @@ class _MovingInterval:
 
     @cached_property
     def by_turn(self) -> tuple[ca.SX, ca.SX, ca.SX]:
-        """∂Ω/∂turn and its rates, 3×size each."""
+        """∂Ω/∂turn and its two rates, 3×size each."""
         value = ca.jacobian(self._kernels.rotation_vector, self.at_rest.turn)
         first = self._rate(value)
         return value, first, self._rate(first)
@@ -167,14 +167,14 @@ class _MovingInterval:
         return IncrementRates(self.at_rest.increment, first, self._rate(first))
 
     def function(self, name: str, more: list[ca.SX], outputs: list[ca.SX], names: list[str]) -> ca.Function:
-        """A function of the symbols of this interval, of its rates and of more."""
+        """A CasADi function of the symbols of this interval, its rates and further symbols."""
         symbols = [*self.at_rest.listed[:-1], self._turn_rate, self._turn_acceleration, *more]
         results = [ca.sparsify(output) for output in ca.cse(outputs)]
         arguments = [*ARGUMENTS[:-1], "turn_rate", "turn_acceleration", *SPINS[: len(more)]]
         return ca.Function(name, symbols, results, arguments, names, KEPT)
 
     def _rate(self, value: ca.SX) -> ca.SX:
-        """Time derivative of a function of the turn and its rate, of the same shape."""
+        """Time derivative of a function of the turn and its rate, in the shape of the function."""
         state = ca.vertcat(self.at_rest.turn, self._turn_rate)
         direction = ca.vertcat(self._turn_rate, self._turn_acceleration)
         rate = ca.jtimes(ca.vec(value), state, direction)
@@ -198,8 +198,8 @@ class RodMotion:
 
     Attributes:
         shape: the rod's shape.
-        rates: of its strain coordinates.
-        base: motion of its base in the world, coordinates in the axes of the base.
+        rates: rates of its strain coordinates.
+        base: motion of its base relative to the world, in base axes.
     """
 
     shape: Shape
@@ -213,10 +213,10 @@ class RodMotion:
 
     @property
     def damped(self) -> RodMotion:
-        """The motion that inertia sees: with damping α proportional to mass, −ρA (r̈ + α ṙ) is one force of inertia.
+        """The motion for inertia: with damping α in proportion to mass, −ρA (r̈ + α ṙ) is one force of inertia.
 
-        Sections accelerate linearly in q̈ and in the acceleration of the base: with α times the rates added to these,
-        each r̈ becomes r̈ + α ṙ, and each d̈ becomes d̈ + α ḋ.
+        Accelerations of sections are linear in q̈ and in the acceleration of the base: α times the rates, added to
+        these, turns each r̈ into r̈ + α ṙ, and each d̈ into d̈ + α ḋ.
         """
         rate = self.rod.properties.mass_damping
         if rate is None:
@@ -254,7 +254,7 @@ class RodMotion:
 
     @cached_property
     def stretch_rate(self) -> Matrix:
-        """ℓ R Γ̇ at the nodes, 3×M, m/s: what shear and extension add to the rate of the tangent."""
+        """ℓ R Γ̇ at the nodes, 3×M, m/s: the part of the tangent's rate by shear and extension."""
         return self._stretched(self.rates.velocity, self._ratio_rate)
 
     @cached_property
@@ -282,7 +282,7 @@ class RodMotion:
         return self._integrated(self.base.acceleration, self.tangent_acceleration)
 
     def undamped(self, rate: str) -> Matrix:
-        """A rate of the nodes as forces other than the rod's own inertia see it, 3×M: without damping by mass."""
+        """A rate of the nodes without damping by mass, 3×M, for forces other than the rod's own inertia."""
         field: Matrix = getattr(self, rate)
         damping = self.rod.properties.mass_damping
         if damping is None or rate not in VELOCITIES:
@@ -337,18 +337,18 @@ class RodMotion:
         return total
 
     def _integrated(self, base: Matrix, rate: Matrix) -> Matrix:
-        """A field of positions, 3×M, from its value at the base, 3×1, and the same field of the tangents, 3×M."""
+        """A field of positions or rates, 3×M, from its value at the base, 3×1, and its derivative along X, 3×M."""
         grid = self.rod.grid
         along = grid.integrated(rate)
-        # The velocity of a base that only turns has no entries: what repeats none is no sound C as CasADi writes it.
+        # The velocity of a base that only turns has no entries, and CasADi writes invalid C for a repetition of none.
         return along if base.nnz() == 0 else ca.repmat(base, 1, grid.size) + along
 
 
 def _swept(base: Matrix, added: Matrix) -> Matrix:
-    """Sums from the base, 3×(intervals + 1), of what each interval adds, 3×intervals."""
+    """Cumulative sums from the base, 3×(intervals + 1), of increments by each interval, 3×intervals."""
     rows: list[Matrix] = []
     for start, row in zip(ca.vertsplit(base), ca.vertsplit(added), strict=True):
-        # A component that is zero for good stays so: a planar rod turns about one axis.
+        # A component that is always zero stays sparse: a planar rod turns about one axis.
         if row.nnz() == 0 and start.nnz() == 0:
             rows.append(ca.DM(1, row.shape[1] + 1))
             continue

@@ -1,16 +1,16 @@
-"""A cable that rubs on its course: its tension falls, or grows, by the angle that it turns through.
+"""A cable with friction along its course: its tension falls, or grows, with the angle through which it turns.
 
 By Euler's and Eytelwein's law of the capstan dT = ∓μ T dφ along a cable that is about to slip, so that its tension is
 
     T(X) = T₀ exp(−μ p φ(X)),    φ(X) = ∫ |dt/dX| dX
 
-with p = 1 where it was last pulled in at its base, p = −1 where it was let out, and t the direction of the cable in the
-world: in the axes of the section |dt/dX| = |t' + ℓ K × t|. Contact with the rod does no work where the cable does not
-slip: a virtual change of strain meets the tension of its place, and the generalised force of T₀ is
+with p = 1 if it was last pulled in at its base, p = −1 if it was let out, and t the direction of the cable in the
+world: in the axes of the section |dt/dX| = |t' + ℓ K × t|. Contact with the rod does no work in a virtual change of
+strain, in which the cable does not slip: each strain does work on the local tension, and the generalised force of T₀ is
 
     Σ ℓ w exp(−μ p φ) ∂|T|/∂q
 
-over the nodes. It is no gradient, so that a rod with such a cable has no potential. See docs/theory.md, section 6.
+over the nodes. It is not a gradient, so that a rod with such a cable has no potential. See docs/theory.md, section 6.
 """
 
 from __future__ import annotations
@@ -35,18 +35,18 @@ Rows = tuple[Row, Row, Row]
 """A vector field in the axes of the sections."""
 
 BETWEEN = 4
-"""Gauss points between neighbouring nodes, for what of |dt/dX| differs from the length of a straight line of dt/dX."""
+"""Gauss points between neighbouring nodes for the integral of |dt/dX|."""
 
 STRAIGHT = 1e-6
-"""Turn of a whole rod, rad, below which a cable's turn is smooth: its derivative is finite where it is straight."""
+"""Turn along a whole rod, rad, by which a cable's turn is smoothed: its derivative is finite for a straight cable."""
 
 
 @dataclass(frozen=True)
 class RubbingRouting:
-    """A routing on which a cable rubs.
+    """A routing of a cable with friction.
 
     Attributes:
-        routing: where the cable runs.
+        routing: path of the cable in the sections.
         friction: μ p, coefficient of friction times the direction of slip, 1×1.
     """
 
@@ -57,13 +57,13 @@ class RubbingRouting:
         check_shape("friction", self.friction, 1, 1)
 
     def on(self, shape: Shape) -> RubbingCable:
-        """The cable on a rod of this shape: the quantity is its length."""
+        """The cable on a rod of this shape; the quantity is its length."""
         return RubbingCable(shape, self.routing, self.friction)
 
 
 @dataclass(frozen=True)
 class RubbingCable(RoutedCable):
-    """A cable that rubs on its routing through a deformed rod.
+    """A cable with friction on its routing through a deformed rod.
 
     Attributes:
         friction: μ p, coefficient of friction times the direction of slip, 1×1.
@@ -73,7 +73,7 @@ class RubbingCable(RoutedCable):
 
     @property
     def conservative(self) -> bool:
-        """False: the force of a cable that rubs is no gradient."""
+        """False: the force of a cable with friction is not a gradient."""
         return False
 
     @cached_property
@@ -84,7 +84,7 @@ class RubbingCable(RoutedCable):
 
     @cached_property
     def turn(self) -> Matrix:
-        """Angle φ that the cable has turned through since its base, 1×k, rad."""
+        """Angle φ through which the cable turns from its base to each node, 1×k, rad."""
         turned = self.turn_slope @ self._interval_weights.T
         if self._kinks is not None:
             missed, _, _ = self._kinks
@@ -107,7 +107,7 @@ class RubbingCable(RoutedCable):
         return self._work_of({c: product(lever, self.shares) for c, lever in self.lever.items()})
 
     def curvature(self, a: int, b: int) -> Row:
-        """Curvature of the cable that does not rub times the share of tension at each node, 1×M, m."""
+        """Curvature of the cable without friction times the share of tension at each node, 1×M, m."""
         row = super().curvature(a, b)
         if row is None:
             return None
@@ -118,7 +118,7 @@ class RubbingCable(RoutedCable):
 
     @cached_property
     def further_stiffness(self) -> Matrix:
-        """Change of the shares of tension in ∂ pull/∂q, n×n, m: not symmetric."""
+        """Part of ∂ pull/∂q by the change of the shares of tension, n×n, m: it is not symmetric."""
         rows: list[Matrix] = []
         for c, lever in self.lever.items():
             phi = ca.DM(self._phi(c))
@@ -130,7 +130,7 @@ class RubbingCable(RoutedCable):
 
     @cached_property
     def mean_share(self) -> Matrix:
-        """Mean of the tension along the course relative to that at its base, 1×1."""
+        """Mean tension along the course over the tension at its base, 1×1."""
         return (self.stretch * self.shares) @ ca.DM(self._node_lengths) / self.value
 
     @cached_property
@@ -140,12 +140,12 @@ class RubbingCable(RoutedCable):
         return (self.pull + by_shares - self.mean_share * self.gradient) / self.value
 
     def rate(self, rate_of: Callable[[Matrix], Matrix]) -> Matrix:
-        """Rate of the length that the tension at the base works on, from the rate of each part of the length, 1×1."""
+        """Rate of the length on which the tension at the base does work, 1×1, from the rate of each part."""
         return rate_of(self.stretch) @ (self.shares.T * ca.DM(self._node_lengths))
 
     @cached_property
     def _weighted_change(self) -> Matrix:
-        """Derivative of the shares with q times the lengths of the nodes, k×n, m."""
+        """Derivative of the shares by q times the lengths of the nodes, k×n, m."""
         by_turn = -self.friction * (self.shares * ca.DM(self._node_lengths).T)
         passed = cumulative_sum(self._interval_turn_gradient, self._interval_weights.shape[0])
         turned = ca.vertcat(ca.DM(1, passed.shape[1]), passed)[self._sections, :]
@@ -176,10 +176,10 @@ class RubbingCable(RoutedCable):
 
     @cached_property
     def _kinks(self) -> tuple[Matrix, Matrix, Matrix] | None:
-        """Errors of the Gauss sums of |u| in intervals where u passes zero, and their derivatives with u at the ends.
+        """Errors of the Gauss sums of |u| in intervals where u passes zero, and their derivatives by u at the ends.
 
-        For u on the straight line between its values at the ends: relative to the width of the interval, 1×I, and m×I
-        each for the m components that u has; None where the cable does not turn.
+        They are for u linear between its values at the ends, relative to the width of the interval, 1×I, and m×I each
+        for the m components of u; None for a cable that does not turn.
         """
         rows = [row for row in self._turning if row is not None]
         if not rows:
@@ -191,9 +191,9 @@ class RubbingCable(RoutedCable):
 
     @property
     def _interval_turn_gradient(self) -> Matrix:
-        """Derivative with q of the angle that each interval between nodes turns through, Σ w (u/|u|)·∂u/∂q, I×n."""
+        """Derivative by q of the turn of each interval between nodes, Σ w (u/|u|)·∂u/∂q, I×n."""
         units = [None if row is None else row / self.turn_slope for row in self._turning_between]
-        # From values at the nodes to the angles of the intervals: few rows, which all strains share.
+        # Matrices from values at the nodes to the angles of the intervals: few rows, which all strains share.
         to_angles = [
             None if unit is None else self._interval_weights @ (ca.diag(unit) @ self._between) for unit in units
         ]
@@ -232,7 +232,7 @@ class RubbingCable(RoutedCable):
         return direction_rate, (x, y, z)
 
     def _direction_rate(self, c: int) -> Rows:
-        """∂t/∂ξ_c = (∂T/∂ξ_c − t ∂|T|/∂ξ_c) / |T|, three rows; None for one that vanishes."""
+        """∂t/∂ξ_c = (∂T/∂ξ_c − t ∂|T|/∂ξ_c) / |T|, three rows; None for a zero row."""
         # A cable parallel to the rod stays so.
         if self.is_parallel:
             return None, None, None
@@ -245,7 +245,7 @@ class RubbingCable(RoutedCable):
         return x, y, z
 
     def _along(self, row: Row) -> Row:
-        """Derivative of a component of t with X, 1×k; None for a cable parallel to the rod."""
+        """Derivative of a component of t by X, 1×k; None for a cable parallel to the rod."""
         if row is None or self.is_parallel:
             return None
         return row @ self._differentiate.T
@@ -305,7 +305,7 @@ class RubbingCable(RoutedCable):
 
     @cached_property
     def _differentiate(self) -> ca.DM:
-        """Matrix of the derivative with X inside each element, k×k."""
+        """Matrix of the derivative by X inside each element, k×k."""
         local = chebyshev.differentiation_matrix(self.shape.rod.grid.intervals)
         return _sparse(np.kron(np.diag(1 / self._elements), local))
 
@@ -320,15 +320,15 @@ def _gauss_points(intervals: int) -> tuple[FloatArray, FloatArray]:
 
 @cache
 def _missed_by_gauss(components: int) -> ca.Function:
-    """(u₀, u₁) ↦ ∫₀¹ √(|u|² + ε²) ds less its Gauss sum for u = u₀ + s (u₁ − u₀), and the derivatives with both.
+    """(u₀, u₁) ↦ ∫₀¹ √(|u|² + ε²) ds less its Gauss sum for u = u₀ + s (u₁ − u₀), and the derivatives by both.
 
     With e₀, e₁ the values of the root at both ends, q their sum, L = |u₁ − u₀| and σ = (e₁ − e₀)/L the integral is, as
     in the potential of a straight segment,
 
         ∫ = q/4 [1 + σ² + (1 − σ²)(1 − c²) artanh(c)/c],    c = L/q.
 
-    It counts where the directions at both ends are more than a right angle apart, in full where they are opposite: only
-    there does u come near zero. A course that turns evenly, as a helix does, is no straight line of u, and its sum is
+    The error counts if the directions at both ends are more than a right angle apart, in full if they are opposite:
+    only then does u come near zero. For a course that turns evenly, as a helix does, u is not linear, and the sum is
     exact.
     """
     left = ca.SX.sym("left", components)
@@ -336,11 +336,11 @@ def _missed_by_gauss(components: int) -> ca.Function:
     e0 = ca.sqrt(ca.sumsqr(left) + STRAIGHT**2)
     e1 = ca.sqrt(ca.sumsqr(right) + STRAIGHT**2)
     q = e0 + e1
-    # A cable that turns alike at both ends has no length of u: its square is kept from zero.
+    # If u is equal at both ends L is zero: its square is kept away from zero.
     squared_length = ca.sumsqr(right - left) + STRAIGHT**2
     length = ca.sqrt(squared_length)
     both = ca.dot(left, right)
-    # q² − L², which rounding must not turn negative where u passes zero itself.
+    # q² − L², which rounding must not make negative if u passes exactly through zero.
     gap = ca.fmax(2 * (e0 * e1 + both) + STRAIGHT**2, STRAIGHT**2)
     artanh = ca.log(q + length) - ca.log(gap) / 2
     share = gap / q**2 * artanh * q / length

@@ -1,4 +1,4 @@
-"""Areas and second moments of cross-sections, and the Hooke tensor they give: report (1.20), (1.21).
+"""Areas and second moments of cross-sections, and their Hooke tensor: report (1.20), (1.21).
 
 The section lies in the local x–y plane; z is the tangent. Every argument may be an array over abscissae, or an
 expression of parameters.
@@ -33,7 +33,7 @@ class SectionShape:
 
     @property
     def second_moments(self) -> Numbers:
-        """I_xx, I_yy and the polar moment I_xx + I_yy, shape (len, 3), m⁴: they resist rotation when times the density.
+        """I_xx, I_yy and the polar moment I_xx + I_yy, shape (len, 3), m⁴: times the density they are rotary inertia.
 
         The polar moment is not the torsion constant J, which warping makes smaller.
         """
@@ -91,7 +91,7 @@ def _tanh_deficit(slenderness: Numbers) -> Numbers:
     """Σ (1 − tanh(nπ/2 a/b))/n⁵ over odd n below 27, for every a/b."""
     n = np.arange(1, 27, 2)
     if is_symbolic(slenderness):
-        # One row a section, one column a term.
+        # One row for each section, one column for each term.
         deficits = 1 - ca.tanh(slenderness @ ca.DM(n * np.pi / 2).T)
         total: Matrix = deficits @ ca.DM(1 / n**5)
         return total

@@ -1,4 +1,4 @@
-"""A wrench as a function of the pose of the section it acts on, differentiated by CasADi.
+"""A wrench as a function of the pose of its section, differentiated by CasADi.
 
 Rods are written in the axes of their base, loads in world axes: the kernel composes the pose of the base with
 the pose of the section, calls the load, and turns force and moment back. With poses (p, R) of the base, (r, θ) of the
@@ -24,16 +24,16 @@ ARGUMENTS = ["position", "rotation", "base_position", "base_rotation", "paramete
 
 @dataclass(frozen=True)
 class SectionKernel:
-    """A small function of one section, its derivative, and its energy where it has one.
+    """A wrench as a small function of one section, with its derivatives, and its energy if it has one.
 
     All functions have the arguments :data:`ARGUMENTS`: position (3×1, m) and rotation (3×3) of the section in the axes
     of the base, position and rotation of the base in the world, the run-time parameters and the section's numbers.
 
     Attributes:
         world_wrench: (position, rotation, parameters, data) ↦ (force, moment), world axes, 3×1 each.
-        world_energy: the same arguments ↦ energy, J or J/m; None for a wrench that is no derivative of an energy.
-        rates: names among :data:`RATES` of arguments that follow, 3×1 each, for a wrench that depends on the motion of
-            the section.
+        world_energy: these arguments ↦ energy, J or J/m; None for a wrench that is not the derivative of an energy.
+        rates: names among :data:`RATES` of further arguments, 3×1 each, for a wrench that depends on the motion of the
+            section.
     """
 
     world_wrench: ca.Function
@@ -54,7 +54,7 @@ class SectionKernel:
 
     @cached_property
     def drag(self) -> ca.Function:
-        """Force and moment less those at rates of zero, 3×1 each, in the axes of the base."""
+        """Force and moment minus their values at zero rates, 3×1 each, in the axes of the base."""
         symbols = self._symbols()
         still = [*symbols[: len(ARGUMENTS)], *(ca.SX(3, 1) for _ in self.rates)]
         pairs = zip(self._in_base(symbols), self._in_base(still), strict=True)
@@ -63,11 +63,11 @@ class SectionKernel:
 
     @cached_property
     def stiffness(self) -> ca.Function:
-        """6×6 derivative of [force; moment] with [δr; δθ], all in the axes of the base."""
+        """Derivative of [force; moment] by [δr; δθ], 6×6, all in the axes of the base."""
         symbols = self._symbols()
         position, rotation = symbols[:2]
         wrench = ca.vertcat(*self._in_base(symbols))
-        # The entries of R are differentiated as if they were free, then led along the rotations.
+        # The entries of R are differentiated as if they were independent, then multiplied by the rates of rotations.
         columns = [ca.vec(rate) for rate in rotation_rates(rotation)]
         with_position = ca.jacobian(wrench, position)
         with_rotation = ca.jacobian(wrench, ca.vec(rotation)) @ ca.horzcat(*columns)
@@ -76,7 +76,7 @@ class SectionKernel:
 
     @cached_property
     def with_rates(self) -> ca.Function:
-        """6×3 derivatives of [force; moment] with each of the rates, in their order, in the axes of the base."""
+        """Derivatives of [force; moment] by each of the rates, in their order, 6×3 each, in the axes of the base."""
         symbols = self._symbols()
         wrench = ca.vertcat(*self._in_base(symbols))
         derivatives = [ca.jacobian(wrench, rate) for rate in symbols[len(ARGUMENTS) :]]
@@ -85,7 +85,7 @@ class SectionKernel:
 
     @cached_property
     def energy(self) -> ca.Function | None:
-        """Energy, J on one section, J/m along a rod; None where the wrench has no energy."""
+        """Energy, J on one section, J/m along a rod; None for a wrench without energy."""
         if self.world_energy is None:
             return None
         symbols = self._symbols()
@@ -118,7 +118,7 @@ class SectionKernel:
 
 
 def rotation_rates(rotation: Matrix) -> list[Matrix]:
-    """Change of a rotation matrix with a turn about each axis, δR = δθ^ R, 3×3 each."""
+    """Derivative of a rotation matrix by a turn about each axis, δR = δθ^ R, 3×3 each."""
     axes = ca.horzsplit(ca.DM.eye(3))
     return [hat(axis) @ rotation for axis in axes]
 

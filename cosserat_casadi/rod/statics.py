@@ -3,8 +3,8 @@
 The sweep is the exact transpose of the forward sweep. With the position r = S t of the tangents t at the nodes, the
 virtual work of the loads is Σ n̂_k·δt_k + Σ ĉ_k·δθ_k, where n̂ = Sᵀ f collects the forces: n̂_k is the internal force
 at node k times its quadrature weight, and Σ_{j>k} (t_j × n̂_j + ĉ_j) is the internal moment, m' = −r' × n − l̄ summed
-from the tip. So the residual is the gradient of the discrete energy wherever an energy exists, the Jacobian is
-symmetric then, and a dead load needs no product with S at all.
+from the tip. So the residual is the gradient of the discrete energy if there is an energy, the Jacobian is symmetric
+then, and a dead load needs no product with S at all.
 """
 
 from __future__ import annotations
@@ -43,8 +43,8 @@ class Statics:
 
     Attributes:
         shape: the rod's shape.
-        loads: what acts on it.
-        evaluated: loads that depend on the poses of their sections, beside these, evaluated at this shape already.
+        loads: loads on the rod.
+        evaluated: further pose-dependent loads, which are already evaluated at this shape.
     """
 
     shape: Shape
@@ -64,7 +64,7 @@ class Statics:
 
     @cached_property
     def wrenches(self) -> list[Wrench]:
-        """All wrenches; a wrench that depends on poses as a dead one, with its value at this shape."""
+        """All wrenches; a pose-dependent one is a dead wrench with its value at this shape."""
         frozen = [load.frozen for load in self.pose_loads]
         return self.fixed_wrenches + frozen
 
@@ -75,7 +75,7 @@ class Statics:
 
     @cached_property
     def fixed_force_covector(self) -> Matrix | None:
-        """The part of n̂ that dead and follower forces make, 3×M, N; None without such."""
+        """The part of n̂ by dead and follower forces, 3×M, N; None without such forces."""
         return self._force_covector_of(self.fixed_wrenches)
 
     @cached_property
@@ -94,18 +94,18 @@ class Statics:
 
     @cached_property
     def interval_moment(self) -> Matrix | None:
-        """Internal moment that passes each interval between nodes, 3×(intervals), N m: m_i of docs/theory.md 6."""
+        """Internal moment transmitted by each interval between nodes, 3×(intervals), N m: m_i of docs/theory.md 6."""
         covector = self.moment_covector
         if covector is None:
             return None
         rows = [_sums_to_the_tip(row) for row in ca.vertsplit(self._at_sections(covector))]
-        # What acts on the base section passes no interval.
+        # No interval transmits a load on the base section.
         return ca.vertcat(*rows)[:, 1:]
 
     @cached_property
     def base_force(self) -> Matrix:
         """Force of the clamp on the rod, base frame, 3×1, N: minus the sum of the loads."""
-        # Sums of the loads, not of n̂: exact whatever the integration matrix.
+        # It sums the loads, not n̂, and so is exact for every integration matrix.
         total = ca.DM.zeros(3, 1)
         for wrench in self.wrenches:
             if wrench.force is not None:
@@ -122,19 +122,19 @@ class Statics:
 
     @property
     def held_force(self) -> Matrix:
-        """Force of what holds the base on the rod, base frame, 3×1, N: with the force of a joint there."""
+        """Force on the rod of all that holds its base, base frame, 3×1, N: the clamp's and that of a joint there."""
         joints = [wrench.force for wrench in self._at_base if wrench.force is not None]
         return sum(joints, self.base_force)
 
     @property
     def held_moment(self) -> Matrix:
-        """Moment of what holds the base on the rod, base frame, 3×1, N m: with the moment of a joint there."""
+        """Moment on the rod of all that holds its base, base frame, 3×1, N m: the clamp's and that of a joint there."""
         joints = [wrench.moment for wrench in self._at_base if wrench.moment is not None]
         return sum(joints, self.base_moment)
 
     @property
     def _at_base(self) -> list[WrenchAt]:
-        """Wrenches on the base section, which pass through no other: from a joint that holds the base."""
+        """Wrenches on the base section, which no other section transmits: from a joint that holds the base."""
         return [wrench for wrench in self.fixed_wrenches if isinstance(wrench, WrenchAt) and is_zero(wrench.at)]
 
     @cached_property
@@ -146,7 +146,7 @@ class Statics:
     def internal_moment(self) -> Matrix:
         """M at the nodes, 3×M, N m, report (1.18) integrated from the tip.
 
-        Integrated over each element from the internal force, so that it jumps where a couple acts.
+        It is integrated over each element from the internal force, so that it jumps at couples.
         """
         lever = cross(self.shape.tangent, self.internal_force)
         of_forces = lever @ ca.DM(self._from_tip).T
@@ -196,7 +196,7 @@ class Statics:
             if is_symbolic(rod.node_lengths):
                 return grid.summed_by_integrals(per_length @ ca.diag(rod.node_lengths))
             return grid.summed_by_integrals(per_length @ ca.diag(ca.DM(known(rod.node_lengths))))
-        # Profiles are numbers: a dead force per length needs no product with S at run time.
+        # With constant profiles a dead force per length needs no product with S at run time.
         profiles = wrench.profiles
         if not any_symbolic([profiles, rod.node_lengths]):
             to_covector = known(rod.node_lengths)[:, None] * grid.integration_matrix
@@ -204,7 +204,7 @@ class Statics:
         return force @ ca.vertcat(*[self._profile_covector(profile) for profile in rows_of(profiles)])
 
     def _profile_covector(self, profile: Numbers) -> Matrix:
-        """Force n̂ of a unit of a profile, 1×M, m: linear in the profile, and in the rates of moved elements."""
+        """n̂ of a unit of a profile, 1×M, m: linear in the profile, and in the rates of moved elements."""
         rod = self.shape.rod
         grid = rod.grid
         rates = grid.rates
@@ -222,7 +222,7 @@ class Statics:
         grid = self.shape.rod.grid
         if isinstance(wrench, WrenchAt):
             node = grid.node_at(wrench.at)
-            # The couple stands at one node alone.
+            # A couple acts at one node alone.
             to_node = ca.DM(ca.Sparsity.triplet(1, grid.size, [0], [node]), 1.0)
             return self._resultant(wrench, moment) @ to_node
         lengths = as_matrix(self.shape.rod.node_lengths)
@@ -239,7 +239,7 @@ class Statics:
         return self.shape.rotation_at(node) @ vector
 
     def _beyond_each_node(self, part: Callable[[Wrench], Matrix | None]) -> Matrix:
-        """Sum over the wrenches of what acts between each node and the tip, 3×M."""
+        """Sum of a part of the wrenches that act between each node and the tip, 3×M."""
         grid = self.shape.rod.grid
         total: Matrix = ca.DM.zeros(3, grid.size)
         for wrench in self.wrenches:
@@ -247,7 +247,7 @@ class Statics:
             if vector is None:
                 continue
             if isinstance(wrench, WrenchAt):
-                # The node at the tip side of a break does not carry what acts on the break.
+                # The internal wrench at the node on the tip side of a break excludes a load on the break.
                 loaded = grid.node_at(wrench.at)
                 before = (np.arange(grid.size) <= loaded).astype(float) * (loaded > 0)
                 total = total + self._resultant(wrench, vector) @ ca.DM(before).T
@@ -261,7 +261,7 @@ class Statics:
         return total
 
     def _at_sections(self, covector: Matrix) -> Matrix:
-        """Covectors of the distinct sections: the two sides of a break act on one section."""
+        """Covectors of the distinct sections: the two nodes at a break are one section, their covectors are summed."""
         grid = self.shape.rod.grid
         if grid.elements == 1:
             return covector
@@ -272,7 +272,7 @@ class Statics:
 
 
 def _sums_to_the_tip(row: Matrix) -> Matrix:
-    """Sum of each entry of a row and of all behind it."""
+    """Sum of each entry of a row and all entries after it."""
     # Made dense first: CasADi 3.8.2 sums a sparse MX wrongly.
     reversed_row = ca.densify(row[:, ::-1])
     return ca.cumsum(reversed_row, 1)[:, ::-1]

@@ -1,14 +1,14 @@
-"""A cable that is straight between holes in sections of a rod, as tendons run between disks.
+"""A cable that is straight between holes in sections of a rod, as tendons are between disks.
 
 Hole k is at p_k = r_k + R_k D_k, so that span j is the chord c_j = p_{j+1} − p_j and the length L = Σ |c_j|. With the
-tension s_j in a span for one at the base, the cable does the work −Σ s_j δ|c_j|: it pulls at hole k with the force
-f_k = s_k ĉ_k − s_{k−1} ĉ_{k−1} and at the section there with the moment R_k D_k × f_k. These wrenches balance, and the
-sweeps take them among the loads. Where the cable rubs, s falls at each hole by the angle φ between two chords,
-s_k = s_{k−1} exp(−μ p φ_k), the law of the capstan. With Q the generalised force of a unit of tension,
+tension s_j in span j for a unit of tension at the base, the cable does the work −Σ s_j δ|c_j|: it pulls at hole k with
+the force f_k = s_k ĉ_k − s_{k−1} ĉ_{k−1} and at the section there with the moment R_k D_k × f_k. These wrenches
+balance, and the sweeps take them among the loads. Where the cable rubs, s falls at each hole by the angle φ between two
+chords, s_k = s_{k−1} exp(−μ p φ_k), the law of the capstan. With Q the generalised force of a unit of tension,
 
     ∂Q/∂q = (frozen wrenches) − Σ δθᵀ (f^ (R D)^) δθ + Σ δcᵀ ∂(s ĉ)/∂c δc,
 
-the first part as of loads in tangent.py. See docs/theory.md, section 6.
+the first part is computed with the loads in tangent.py. See docs/theory.md, section 6.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.wrenches import LineWrench
 
 STRAIGHT = 1e-6
-"""Sine of an angle at a hole below which it is smooth: its derivative is finite where the cable is straight."""
+"""Sine of an angle at a hole by which the angle is smoothed: its derivative is finite for a straight cable."""
 
 
 @cache
 def _spans(count: int, rubs: bool) -> ca.Function:
-    """Chords, a row each, and μ p ↦ mean of the tension, and of all spans the pull s ĉ with its derivative.
+    """(chords, one in each row, μ p) ↦ mean tension, and the pull s ĉ of all spans with its derivative.
 
-    Derivatives are taken with the chords, one component after the other.
+    Derivatives are by the chords, one component after the other.
     """
     chords = ca.SX.sym("chords", count, 3)
     friction = ca.SX.sym("friction")
@@ -61,12 +61,12 @@ def _spans(count: int, rubs: bool) -> ca.Function:
 
 @dataclass(frozen=True)
 class HoleRouting:
-    """Holes that a cable is led through, from where it enters to where it is anchored.
+    """Holes of a cable in sections of a rod, from its entry to its anchor.
 
     Attributes:
-        nodes: indices of the k nodes whose sections have them, shape (k,).
+        nodes: indices of the k nodes of the sections with holes, shape (k,).
         offset: D_x and D_y in the section, shape (2, k), m, numbers or expressions.
-        friction: μ p, coefficient of friction times the direction of slip, 1×1; None where the cable does not rub.
+        friction: μ p, coefficient of friction times the direction of slip, 1×1; None without friction.
     """
 
     nodes: Indices
@@ -93,7 +93,7 @@ class StraightCable(Cable):
 
     @property
     def conservative(self) -> bool:
-        """Whether the cable does not rub: friction is no gradient."""
+        """Whether the cable is without friction, whose force is not a gradient."""
         return self.routing.friction is None
 
     @cached_property
@@ -144,7 +144,7 @@ class StraightCable(Cable):
 
     @cached_property
     def section_stiffness(self) -> Matrix:
-        """Change of minus the wrench with [δr; δθ], 6k×6k: holes turn with sections, and spans with holes."""
+        """Derivative of minus the wrench by [δr; δθ], 6k×6k: holes turn with sections, and spans with holes."""
         arms = hat_operator(self.arms)
         levers = hat_operator(self._at_holes(self._results[2].T)) @ arms
         to_spans = ca.kron(ca.DM.eye(3), ca.sparsify(ca.DM(np.diff(np.eye(len(self.wrench_nodes)), axis=0))))
@@ -154,16 +154,16 @@ class StraightCable(Cable):
 
     @property
     def mean_share(self) -> Matrix | None:
-        """Mean tension along the course over the tension at its base, 1×1; None where the tension is uniform."""
+        """Mean tension along the course over the tension at its base, 1×1; None if the tension is uniform."""
         return None if self.conservative else self._results[4]
 
     @cached_property
     def mean_share_gradient(self) -> Matrix | None:
-        """Derivative of the mean share with q, n×1; None where the tension is uniform."""
+        """Derivative of the mean share with q, n×1; None if the tension is uniform."""
         return None if self.conservative else self._work_of(self._results[5].T)
 
     def rate(self, rate_of: Callable[[Matrix], Matrix]) -> Matrix:
-        """Rate of the length that the tension at the base works on, 1×1."""
+        """Rate of the length on which the tension at the base does work, 1×1."""
         return ca.dot(self._results[2].T, rate_of(self.chords))
 
     @cached_property
@@ -182,7 +182,7 @@ class StraightCable(Cable):
         forces = self._at_holes(pulls)
         size = self.shape.rod.grid.size
         nodes = self.wrench_nodes
-        # At a node, a force is one per length over the length of the node.
+        # A force at a node counts as force per length: it is divided by the length of the node.
         lengths = ca.repmat(as_matrix(self.shape.rod.node_lengths)[nodes].T, 3, 1)
         to_nodes = ca.DM(ca.Sparsity.triplet(len(nodes), size, list(range(len(nodes))), nodes), 1.0)
         force, moment = ((part / lengths) @ to_nodes for part in (forces, cross(self.arms, forces)))

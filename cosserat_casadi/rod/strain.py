@@ -2,12 +2,12 @@
 
 See docs/theory.md section 2.
 
-A rod whose length ℓ is drawn out of a reference length ℓ₀ by a ratio ℓ/ℓ₀ is written in the strain per reference length
-(ℓ/ℓ₀) ξ: coordinates and constant matrices stay those of ℓ₀, the intrinsic strain takes the ratio, and the stiffness
-its inverse. An element whose ends are elsewhere than in the grid is drawn out in the same way, by its own rate.
+A rod of length ℓ, drawn out from a reference length ℓ₀, is written in the strain per reference length (ℓ/ℓ₀) ξ:
+coordinates and constant matrices stay those of ℓ₀, the intrinsic strain is multiplied by the ratio ℓ/ℓ₀, and the
+stiffness divided by it. An element with ends moved off the grid is drawn out in this way too, by its own rate.
 
-The coordinates q are without unit. Φ carries one strain scale for each component, √(EI/(ℓ² H)), so that the stiffness
-matrix divided by EI/ℓ has entries of order one whatever the slenderness: a rod with EA ℓ²/EI = 1e8 is as well
+The coordinates q are dimensionless. Φ has one strain scale for each component, √(EI/(ℓ² H)), so that the stiffness
+matrix divided by EI/ℓ has entries of order one for every slenderness: a rod with EA ℓ²/EI = 1e8 is as well
 conditioned as one with 1e2.
 
 Stiffness and viscosity in these coordinates are sums over Gauss points of the elements, report (2.14). An element that
@@ -59,11 +59,11 @@ _POLYNOMIALS: dict[str, Callable[[int, FloatArray], FloatArray]] = {
 
 
 Ratio: TypeAlias = Matrix | None
-"""Length of a rod relative to the reference length, 1×1; None where it is 1 for good."""
+"""Length of a rod relative to the reference length, 1×1; None if it is always 1."""
 
 
 def per_reference_length(value: Matrix, ratio: Ratio) -> Matrix:
-    """A density per length of the rod as a density per reference length; unchanged where the length is fixed."""
+    """A density per length of the rod as a density per reference length; unchanged for a fixed length."""
     return value if ratio is None else value * ratio
 
 
@@ -72,7 +72,7 @@ class DiscreteRod:
     """The constant matrices that turn strain coordinates into strains.
 
     Attributes:
-        properties: what the rod is made of.
+        properties: the unloaded rod.
         discretisation: polynomials and grid.
         ends: abscissae of the element ends, numbers or expressions; None for the ends of the discretisation.
     """
@@ -123,7 +123,7 @@ class DiscreteRod:
 
     @cached_property
     def scales(self) -> tuple[float, ...]:
-        """Strain that one unit of a coordinate stands for, per admitted component (1/m or none)."""
+        """Strain by a unit of a coordinate, for each admitted component, 1/m or dimensionless."""
         mean = self.properties.mean_hooke
         unit = self.properties.bending_stiffness / self.length**2
         # A constant strain of this size stores EI/(2ℓ) in the rod.
@@ -132,7 +132,7 @@ class DiscreteRod:
 
     @cached_property
     def columns(self) -> dict[int, slice]:
-        """Coordinates of each admitted component in q: stacked component by component, then by element."""
+        """Slice of each admitted component in q, which is stacked component by component, then by element."""
         columns = {}
         start = 0
         for component, modes in zip(self.admitted, self.discretisation.modes, strict=True):
@@ -151,7 +151,7 @@ class DiscreteRod:
         start = breaks[element]
         width = breaks[element + 1] - start
         values = self.scales[number] * polynomials(modes, (X - start) / width)
-        # Every element has polynomials of its own, side by side.
+        # The polynomials of the elements stand side by side.
         result = np.zeros((len(X), modes * self.discretisation.elements))
         for row, e in enumerate(element):
             own = slice(e * modes, (e + 1) * modes)
@@ -178,7 +178,7 @@ class DiscreteRod:
     def turn_axes(self) -> FoldedAxes:
         """Matrices from the coordinates of each turning axis to the Taylor coefficients of the turns about it.
 
-        The intervals of an element mirror each other: every mode enters only the sum or the difference of two mirrored
+        The intervals of an element are mirror images: every mode enters only the sum or the difference of two mirrored
         intervals.
         """
         orders = len(self.taylor_matrices)
@@ -205,23 +205,23 @@ class DiscreteRod:
 
     @cached_property
     def reference_lengths(self) -> FloatArray:
-        """Length of each node in sums over the coordinate that strains are per, ℓ w, shape (M,), m."""
+        """Weight ℓ w of each node in sums over the grid's coordinate, to which strains refer, shape (M,), m."""
         return np.asarray(self.length * self.grid.weights)
 
     @cached_property
     def node_lengths(self) -> Numbers:
-        """Length of rod that each node stands for in sums, shape (M,), m."""
+        """Length of rod that each node represents in sums, shape (M,), m."""
         return each_times(self.reference_lengths, self.node_rates)
 
     @cached_property
     def node_rates(self) -> Numbers | None:
-        """Rate dX of the rod's abscissa at the nodes, shape (M,); None where it is one."""
+        """Derivative of the rod's abscissa by the grid's coordinate at the nodes, shape (M,); None if it is one."""
         return self.grid.rates_in(self.grid.element_of_node)
 
     def strain_of(self, component: int, X: FloatArray) -> FloatArray:
         """Strain by each coordinate of a component at abscissae of a rod whose elements have known ends, (len(X), n_c).
 
-        A break is seen from the element it ends.
+        A break belongs to the element that it ends.
         """
         element = self.grid.element_of(X)
         per_reference = self.shape_functions(component, self.grid.in_coordinate(X, element), element)
@@ -229,7 +229,7 @@ class DiscreteRod:
 
     @cached_property
     def node_matrices(self) -> dict[int, FoldedMatrix]:
-        """Φ_c at the nodes, M×n_c for each admitted component c: modes meet sums or differences of mirrored nodes."""
+        """Φ_c at the nodes, M×n_c for each admitted component c, folded: modes are even or odd."""
         signs = np.ones(self.grid.size)
         matrices = {}
         for c, values in self.at_nodes.items():
@@ -261,7 +261,7 @@ class DiscreteRod:
         return viscosity if is_symbolic(viscosity) else ca.sparsify(as_matrix(viscosity))
 
     def at(self, q: Matrix, X: FloatArray, ratio: Matrix | float = 1.0) -> Matrix:
-        """Strain ξ at any abscissae, 6×k, report (2.1); a break is seen from the element it ends."""
+        """Strain ξ at any abscissae, 6×k, report (2.1); a break belongs to the element that it ends."""
         intrinsic = self.properties.intrinsic_strain(X)
         rows = []
         for c in range(6):
@@ -276,7 +276,7 @@ class DiscreteRod:
     def strain_rows(self, q: Matrix, components: Sequence[int], ratio: Ratio = None) -> list[Matrix | None]:
         """Components of (ℓ/ℓ₀) ξ, times the rates of the elements, at the nodes as 1×M rows.
 
-        None for a row that is zero whatever the load.
+        A row that is zero under every load is None.
         """
         intrinsic = self.properties.intrinsic_strain(self.grid.nodes)
         # Strains that are neither admitted nor intrinsic stay zero, and cost nothing below.
@@ -293,7 +293,7 @@ class DiscreteRod:
         return rows
 
     def change_row(self, q: Matrix, component: int) -> Matrix | None:
-        """The share of the coordinates in a row of :meth:`strain_rows`, 1×M; None of a strain that is not admitted."""
+        """The part of a row of :meth:`strain_rows` by the coordinates, 1×M; None for a strain that is not admitted."""
         if component not in self.columns:
             return None
         return (self.node_matrices[component] @ q[self.columns[component]]).T
@@ -309,7 +309,7 @@ class DiscreteRod:
         for order, per_interval in enumerate(self._taylor(samples)):
             matrices = {}
             for c in self.angular:
-                # A polynomial has no Taylor coefficient beyond its degree: what is there is rounding.
+                # A polynomial has no Taylor coefficient beyond its degree: numbers there are rounding.
                 within_degree = self.degrees(c) >= order
                 matrices[c] = per_interval[:, self.columns[c]] * within_degree
             orders.append(matrices)
@@ -319,7 +319,7 @@ class DiscreteRod:
     def intrinsic_turn(self) -> Numbers:
         """Taylor coefficients of the unloaded turn of every interval, shape (size, intervals), rad.
 
-        All turning axes of the first coefficient, then all of the next.
+        The order is: all turning axes of the first coefficient, then all of the next.
         """
         axes = list(self.properties.turning_axes)
         curvatures = self.properties.intrinsic[:3]
@@ -337,26 +337,26 @@ class DiscreteRod:
             for axis in axes:
                 own = curvatures[axis]
                 degrees = np.arange(len(own))
-                # A polynomial has no Taylor coefficient beyond its degree: what is there is rounding.
+                # A polynomial has no Taylor coefficient beyond its degree: numbers there are rounding.
                 by_coefficient = turn[:, : len(own)] * (degrees >= order)
                 rows.append(product(by_coefficient, as_vector(own)).T)
         return ca.vertcat(*rows)
 
     @cached_property
     def intrinsic_taylor(self) -> list[FloatArray]:
-        """Taylor coefficients of an unloaded turn that is known: one (intervals, 3) array for each l."""
+        """Taylor coefficients of an unloaded turn in numbers: one array (intervals, 3) for each l."""
         X, element, *_ = self._taylor_samples
         curvature = self.properties.intrinsic_curvature(self.grid.on_rod(X, element))
         return self._taylor(self._per_coordinate(curvature, element))
 
     def _per_coordinate(self, values: Numbers, element: Indices) -> FloatArray:
-        """Values per length of the rod, at places in elements, as values per length of the grid's coordinate."""
+        """Convert values per length of the rod, at coordinates in elements, to values per length of the grid."""
         return known(each_times(values, self.grid.rates_in(element)))
 
     def _moved_intrinsic_turn(self) -> Matrix:
-        """Taylor coefficients of the unloaded turn, (size, intervals), rad, where element ends are expressions.
+        """Taylor coefficients of the unloaded turn, (size, intervals), rad, for element ends that are expressions.
 
-        The unloaded curvature is sampled where its elements are.
+        The unloaded curvature is sampled at the moved elements.
         """
         rows: list[Matrix] = []
         turns = [self._turn_of_samples(len(own)) for own in self.properties.intrinsic[:3]]
@@ -372,7 +372,7 @@ class DiscreteRod:
         return ca.vertcat(*rows)
 
     def _element_samples(self, axis: int) -> Matrix:
-        """Unloaded curvature about an axis at as many Gauss points of each element as determine it, times its rate."""
+        """Unloaded curvature about an axis times the element's rate, at enough Gauss points to determine it."""
         count = len(self.properties.intrinsic[axis])
         points, _ = gauss_legendre(count)
         breaks = np.asarray(self.grid.breaks)
@@ -383,7 +383,7 @@ class DiscreteRod:
         return as_matrix(each_times(column(curvature, axis), rates))
 
     def _turn_of_samples(self, count: int) -> list[FloatArray]:
-        """Taylor coefficients of all intervals by so many samples of each element, (intervals, E·count) for each l."""
+        """Matrices from ``count`` samples of each element to Taylor coefficients, (intervals, E·count) for each l."""
         points, _ = gauss_legendre(count)
         to_coefficients = np.linalg.inv(legendre.legvander(points, count - 1))
 
@@ -400,7 +400,7 @@ class DiscreteRod:
 
     @cached_property
     def taylor_count(self) -> int:
-        """Taylor coefficients read per interval: one where all turns share an axis."""
+        """Number of Taylor coefficients for each interval: one if all turns are about one axis."""
         if len(self.properties.turning_axes) < 2:
             return 1
         return magnus.coefficient_count(int(self.discretisation.transport.removeprefix("magnus")))
@@ -416,7 +416,7 @@ class DiscreteRod:
     def _taylor_samples(self) -> tuple[FloatArray, Indices, FloatArray, FloatArray]:
         """Gauss points of all intervals with their elements, lengths ℓ h of the intervals, and samples ↦ coefficients.
 
-        Places are in the grid's coordinate; the matrix is one for all intervals, shape (count, points).
+        Points are in the grid's coordinate; all intervals have one matrix, shape (count, points).
         """
         degree = max([*self.discretisation.modes, *map(len, self.properties.intrinsic)])
         # Enough Gauss points for the field's own polynomials, so that ∫ K is exact.
@@ -452,7 +452,7 @@ def section_matrix(rod: DiscreteRod, diagonal: Field) -> Numbers:
 def _gauss_points(rod: DiscreteRod, element: int) -> tuple[FloatArray, FloatArray]:
     """Places of an element in the grid's coordinate, shape (k,), and the weights ℓ w / (EI/ℓ) of a sum over them.
 
-    Enough for the product of two polynomials with a section stiffness of degree four.
+    The points suffice for the product of two polynomials with a section stiffness of degree four.
     """
     points, weights = gauss_legendre(max(rod.discretisation.modes) + 8)
     start, end = rod.grid.breaks[element : element + 2]
@@ -463,7 +463,7 @@ def _gauss_points(rod: DiscreteRod, element: int) -> tuple[FloatArray, FloatArra
 
 
 def _per_reference_length(rod: DiscreteRod, diagonal: Field, element: int, X: FloatArray) -> Numbers:
-    """Coefficients for strains per reference length at places of an element, shape (k, 6) or one row for all."""
+    """Coefficients for strains per reference length at k points of an element, shape (k, 6), or one row for all."""
     elements = np.full(len(X), element)
     coefficients = diagonal(rod.grid.on_rod(X, elements))
     rate = rod.grid.rates_in(elements)
@@ -477,7 +477,7 @@ def _per_reference_length(rod: DiscreteRod, diagonal: Field, element: int, X: Fl
 
 
 def _symbolic_section_matrix(rod: DiscreteRod, by_element: Sequence[Numbers]) -> Numbers:
-    """The section matrix where coefficients are expressions; its entries are linear in the coefficients."""
+    """The section matrix for coefficients that are expressions, in which its entries are linear."""
     points = [_gauss_points(rod, e) for e in range(rod.grid.elements)]
     element = np.repeat(np.arange(rod.grid.elements), [len(X) for X, _ in points])
     X = np.concatenate([X for X, _ in points])
@@ -497,7 +497,7 @@ def _symbolic_section_matrix(rod: DiscreteRod, by_element: Sequence[Numbers]) ->
     blocks = []
     for c in rod.columns:
         phi = rod.shape_functions(c, X, element)
-        # One column a point: the product of two modes there, for every pair of modes.
+        # One column for each point: the product of two modes there, for every pair of modes.
         pairs = (phi[:, :, None] * phi[:, None, :] * weights[:, None, None]).reshape(len(X), -1).T
         if by_row is not None:
             pairs = without_rounding(pairs @ by_row)
@@ -505,5 +505,5 @@ def _symbolic_section_matrix(rod: DiscreteRod, by_element: Sequence[Numbers]) ->
         size = phi.shape[1]
         blocks.append(ca.reshape(product(pairs, own), size, size))
     matrix = ca.diagcat(*blocks)
-    # Parameters may be of strains alone that the rod does not have.
+    # The expressions may belong only to strains that the rod does not admit.
     return matrix if is_symbolic(matrix) else ca.DM(matrix).full()

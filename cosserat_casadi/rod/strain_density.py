@@ -1,8 +1,8 @@
 """A quantity given by its density along the rod, g(ξ), which CasADi differentiates.
 
-For an actuator whose quantity is no cable's length and not linear in the strains, and for the energy of a material that
-is not linear: the density is a small function of the six strains of one section, and gradient and curvature are its
-derivatives at the nodes.
+It serves actuators with a quantity that is neither a cable's length nor linear in the strains, and the energy of a
+nonlinear material. The density is a small function of the six strains of one section, and gradient and curvature are
+its derivatives at the nodes.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class StrainDensity:
     Attributes:
         density: g, a function of CasADi matrices.
         nodes: the k nodes of the span.
-        data: what g depends on along the rod, shape (d, k).
+        data: numbers along the rod on which g depends, shape (d, k).
         of_change: whether g is a function of the change of the strains from the unloaded ones, ξ − ξ⁰.
     """
 
@@ -79,7 +79,7 @@ class StrainDensityOnRod(Conjugate):
         return ca.vertcat(*parts)
 
     def curvature(self, a: int, b: int) -> Matrix | None:
-        """∂²(ℓ w g)/∂ξ_a∂ξ_b at the nodes, 1×M; None where it vanishes whatever the rod does."""
+        """∂²(ℓ w g)/∂ξ_a∂ξ_b at the nodes, 1×M; None if it is zero for every shape."""
         _, _, second = self._at_nodes
         row = second[6 * b + a, :]
         if not row.nnz():
@@ -91,7 +91,7 @@ class StrainDensityOnRod(Conjugate):
 
     @cached_property
     def strain(self) -> Matrix:
-        """Strains that the density is a function of, per length of the rod, at the nodes, 6×k."""
+        """Arguments of the density: strains per length of the rod at the nodes, 6×k."""
         nodes = self.quantity.nodes.tolist()
         zero = ca.DM(1, len(nodes))
         strain = ca.vertcat(*[zero if row is None else row[nodes] for row in self._strain_rows])
@@ -106,14 +106,14 @@ class StrainDensityOnRod(Conjugate):
         present = [c for c, row in enumerate(self._strain_rows) if row is not None]
         mapped = self._kernel(present).map(len(self.quantity.nodes))
         symbols = mapped.mx_in()
-        # A map itself takes no options.
+        # A CasADi map takes no options itself.
         kernel = ca.Function("densities", symbols, mapped.call(symbols), ONE_DIRECTION)
         density, gradient, second = kernel.call([self.strain, as_matrix(self.quantity.data)])
         return density, gradient, second
 
     def _kernel(self, present: list[int]) -> ca.Function:
         """(strain, data) ↦ (density, gradient, second derivatives) of one section."""
-        # A strain that is zero whatever the rod does has no symbol: nothing is written for it.
+        # A strain that is zero for every shape has no symbol, so that no code is written for it.
         first_column = [0] * len(present)
         pattern = ca.Sparsity.triplet(6, 1, present, first_column)
         strain = ca.SX.sym("strain", pattern)
@@ -132,7 +132,7 @@ class StrainDensityOnRod(Conjugate):
 
     @cached_property
     def _strain_rows(self) -> list[Matrix | None]:
-        """Strains at all nodes that the density is a function of, 1×M each; None for strains that stay zero."""
+        """Arguments of the density: strains at all nodes, 1×M each; None for strains that stay zero."""
         rod = self.shape.rod
         if self.quantity.of_change:
             return [rod.change_row(self.shape.q, c) for c in range(6)]
@@ -140,7 +140,7 @@ class StrainDensityOnRod(Conjugate):
 
     @cached_property
     def _rates(self) -> Numbers | None:
-        """Length of rod for each reference length at the nodes of the span, shape (k,); None where it is one."""
+        """Length of rod over reference length at the nodes of the span, shape (k,); None if it is one."""
         grid = self.shape.rod.grid
         rates = grid.rates_in(grid.element_of_node[self.quantity.nodes])
         ratio = self.shape.ratio
@@ -150,7 +150,7 @@ class StrainDensityOnRod(Conjugate):
 
 
 def energy_beyond_hooke(shape: Shape) -> StrainDensityOnRod | None:
-    """Elastic energy of a rod beyond its Hooke tensor's, J; None for a rod that is linear."""
+    """Elastic energy of a rod beyond its Hooke tensor's, J; None for a linear rod."""
     rod = shape.rod
     law = rod.properties.beyond_hooke
     if law is None:
@@ -161,10 +161,10 @@ def energy_beyond_hooke(shape: Shape) -> StrainDensityOnRod | None:
 
 @dataclass(frozen=True)
 class StiffnessBeyondHooke:
-    """Stiffness of a rod beyond that of its Hooke tensor, as its strains make it, over EI/ℓ.
+    """Stiffness of a rod beyond the Hooke tensor's at its strains, over EI/ℓ.
 
     Attributes:
-        energy: elastic energy of the rod beyond that of its Hooke tensor.
+        energy: elastic energy of the rod beyond the Hooke tensor's.
     """
 
     energy: StrainDensityOnRod
@@ -201,6 +201,6 @@ class StiffnessBeyondHooke:
 
 
 def stiffness_beyond_hooke(shape: Shape) -> StiffnessBeyondHooke | None:
-    """Stiffness of a rod at a shape beyond that of its Hooke tensor; None of a rod that is linear."""
+    """Stiffness of a rod at a shape beyond the Hooke tensor's; None for a linear rod."""
     energy = energy_beyond_hooke(shape)
     return None if energy is None else StiffnessBeyondHooke(energy)

@@ -1,27 +1,27 @@
 """Jacobian of a rod's residual from its structure, exact for the discrete model: docs/theory.md section 7.
 
 Column i of every matrix below is the variation of a field with the i-th strain coordinate, stacked component by
-component. Rotations vary by δθ = Σ R T ∂Ω/∂q over the intervals passed, tangents by δt = δθ × t + ℓ Σ d_c δΓ_c.
+component. Rotations vary by δθ = Σ R T ∂Ω/∂q over the intervals from the base, tangents by δt = δθ × t + ℓ Σ d_c δΓ_c.
 
-**Frozen wrenches.** The moments that intervals pass vary as the rod beyond them turns. Forces of fixed direction have a
-potential, so the upper triangle of their part is enough and the lower one is its mirror. Couples have none, unless the
-rod turns about one axis. Write θ_i for column i of the δθ of the section that a couple c acts on, θ_i^ = ∂_iR Rᵀ. Since
-∂_i∂_jR = ∂_j∂_iR,
+**Frozen wrenches.** The moments that intervals transmit vary as the rod beyond them turns. Forces of fixed direction
+have a potential, so the upper triangle of their part is enough and the lower one is its mirror. Couples have none,
+unless the rod turns about one axis. Write θ_i for column i of the δθ of the section that a couple c acts on, θ_i^ =
+∂_iR Rᵀ. Since ∂_i∂_jR = ∂_j∂_iR,
 
     ∂_iθ_j − ∂_jθ_i = θ_i × θ_j .
 
 A frozen couple has the residual g_j = −c·θ_j and the Jacobian J_ji = −c·∂_iθ_j, so that with the skew matrix
 C_ji = θ_j·(c × θ_i) the triangles differ by J_ji − J_ij = −c·(θ_i × θ_j) = −C_ji. A couple that follows its section
 varies by δc = θ_i × c and adds −(θ_i × c)·θ_j = C_ji everywhere: its triangles differ by C_ji. docs/theory.md writes C
-as δθᵀ ĉ δθ. For wrenches at points such a difference is cheaper than the other triangle; where wrenches are spread, or
-columns are formed one by one, all entries are formed.
+as δθᵀ ĉ δθ. For wrenches at points such a difference is cheaper than the other triangle; for wrenches along the rod, or
+columns that are formed one by one, all entries are formed.
 
-**Wrenches that follow.** They turn with their sections, δf = δθ × f and δc = δθ × c. These changes pass down the rod as
-the wrenches do, and are added to the variation of the moments before the intervals work on it: a column of the Jacobian
-is formed from the tip to the base, and no two columns meet in a product.
+**Followers.** They turn with their sections, δf = δθ × f and δc = δθ × c. These changes are transmitted down the rod as
+the wrenches are, and are added to the variation of the moments before the intervals do work on it: a column of the
+Jacobian is formed from the tip to the base, and no two columns meet in a product.
 
-**What else varies.** Loads that depend on poses vary by the derivative of their kernel, efforts by the curvature of the
-quantity that they work on. Only what a scene's loads need is formed.
+**Other variations.** Loads that depend on poses vary by the derivative of their kernel, efforts by the curvature of
+their conjugate. Only the terms that a scene's loads need are formed.
 """
 
 from __future__ import annotations
@@ -60,13 +60,13 @@ from cosserat_casadi.rod.wrenches import Wrench, WrenchAt
 
 @dataclass(frozen=True)
 class Columns:
-    """Columns of the Jacobian for the angular coordinates, with the variations that follow from the turns of one alone.
+    """Columns of the Jacobian for the angular coordinates, each computed from the turns by its coordinate alone.
 
     Attributes:
         section_rotation: :attr:`Tangent.section_rotation`.
         angular: angular rows before they are made symmetric, n_a rows.
         linear: rows of each linear strain against the angular columns under frozen forces, by component.
-        following: what forces that follow add to these, by component; empty where none does.
+        following: terms of follower forces in these rows, by component; empty without follower forces.
     """
 
     section_rotation: Matrix
@@ -81,10 +81,10 @@ class Tangent:
 
     Attributes:
         igm: the rod's balance.
-        in_loops: whether it is written for loops: there sums and differences of mirrored rows cost more than they save.
-        turns: turns of the intervals by coordinate, (size·intervals)×k, in place of the turns by the angular
-            coordinates; :attr:`columns` then has one column for each of these turns.
-        given: columns of all angular coordinates that are known already.
+        in_loops: whether it is written for loops, in which sums and differences of mirrored rows do not pay.
+        turns: turns of the intervals by k coordinates, (size·intervals)×k, instead of the turns by the angular
+            coordinates; :attr:`columns` then has one column for each of them.
+        given: columns of all angular coordinates, if they are already computed.
     """
 
     igm: InverseGeometricModel
@@ -124,7 +124,7 @@ class Tangent:
 
     @cached_property
     def columns(self) -> Columns:
-        """Columns of the turns, or of all angular coordinates, where moments pass."""
+        """Columns of the turns, or of all angular coordinates, for intervals that transmit moments."""
         if self.given is not None:
             return self.given
         section_rotation = self.section_rotation
@@ -136,11 +136,11 @@ class Tangent:
         return Columns(section_rotation, self._angular_product, linear, following)
 
     def under(self, load: LoadedSections) -> Tangent:
-        """This tangent of this shape where one load that depends on poses acts alone."""
+        """The tangent at this shape under one pose-dependent load alone."""
         model = InverseGeometricModel(Statics(self.shape, (), (load,)))
         if not self.kernels.axes:
             return Tangent(model, self.in_loops)
-        # The turns are those of the rod under all its loads; what moments make of them is not asked for.
+        # The turns are the same as under all loads; the terms of moments are not needed.
         turns = Columns(self.section_rotation, ca.DM(self.angular_size, self.angular_size), {}, {})
         return Tangent(model, self.in_loops, given=turns)
 
@@ -203,8 +203,8 @@ class Tangent:
         return self.at_nodes(self.section_rotation)
 
     def at_nodes(self, sections: Matrix) -> Matrix:
-        """Variations at the nodes, 3M×k, from variations of the sections beyond the base, which has none; stacked."""
-        # Both nodes at a break turn with their one section; the base does not turn.
+        """Stacked variations at the nodes, 3M×k, from variations of the sections beyond the base, which has none."""
+        # Both nodes at a break turn with their section; the base does not turn.
         section_of_node = np.asarray(self.rod.grid.section_of_node).tolist()
         parts = ca.vertsplit(sections, self.intervals)
         return ca.vertcat(*[_with_base(part)[section_of_node, :] for part in parts])
@@ -236,7 +236,7 @@ class Tangent:
         """δr of k sections, one below the other, 3k×n, m.
 
         Args:
-            weights: of the values at the nodes, M×k.
+            weights: weights of the values at the nodes, M×k.
         """
         integrals = weights.T @ ca.DM(self.rod.grid.integration_matrix)
         return ca.vertcat(*[self._displacement(row) for row in ca.vertsplit(integrals)])
@@ -245,7 +245,7 @@ class Tangent:
         """Changes Σ w δQ of the weighted means of the quaternions at the nodes, one below the other, 4k×n.
 
         Args:
-            weights: of the values at the nodes, M×k.
+            weights: weights of the values at the nodes, M×k.
         """
         changes = []
         for column in ca.horzsplit(weights):
@@ -285,7 +285,7 @@ class Tangent:
             node = load.nodes[0]
             return ca.vertcat(self.position(node), self.rotation_of(node))
         if load.load.sections is not None:
-            # Its force does not hang on rotations.
+            # Its force does not depend on rotations.
             return ca.vertcat(load.moved(self.tangent), ca.DM(3 * load.count, self.rod.size))
         return self.motion_of(load.nodes)
 
@@ -301,7 +301,7 @@ class Tangent:
 
     @cached_property
     def stiff_sections(self) -> list[StiffSections]:
-        """Sections of the rod with their loads that depend on poses."""
+        """Sections of the rod with their pose-dependent loads."""
         return by_sections(self.igm.statics.pose_loads)
 
     def change(self, stiff: StiffSections) -> tuple[Matrix, Matrix]:
@@ -336,7 +336,7 @@ class Tangent:
         return ca.horzcat(angular, linear)
 
     def _wrenches(self) -> Matrix:
-        """Stiffness of the wrenches, taken as dead or following ones, n×n; zero between two linear strains."""
+        """Stiffness of the wrenches as dead wrenches or followers, n×n; zero between two linear strains."""
         if not self.moments_pass:
             return ca.DM(self.rod.size, self.rod.size)
         # Sections do not turn with linear strains, and neither do the forces that follow them.
@@ -360,14 +360,14 @@ class Tangent:
         matrix = self.columns.angular
         if self._have_potential:
             return _mirrored(matrix)
-        # Known columns have all entries already; of loads per length the difference takes as long as they do.
+        # Given columns have all entries; for loads per length the difference is as costly as the entries.
         if self.given is not None or not self._potential_lacks_at_points:
             return matrix
         return _mirrored(matrix) + ca.tril(self._difference_of_triangles() / self.rod.energy_unit, False)
 
     @property
     def _have_potential(self) -> bool:
-        """Whether all wrenches have a potential once wrenches that depend on poses are taken as dead ones."""
+        """Whether all wrenches have a potential, with pose-dependent ones taken as dead wrenches."""
         wrenches = self.igm.pulled.wrenches
         follows = any(wrench.follower and wrench.force is not None for wrench in wrenches)
         turns = any(wrench.moment is not None for wrench in wrenches)
@@ -375,7 +375,7 @@ class Tangent:
 
     @property
     def _potential_lacks_at_points(self) -> bool:
-        """Whether points alone carry wrenches without a potential."""
+        """Whether all wrenches without a potential act at points."""
         for wrench in self.igm.pulled.wrenches:
             follows = wrench.follower and wrench.force is not None
             if (follows or wrench.moment is not None) and not isinstance(wrench, WrenchAt):
@@ -383,7 +383,7 @@ class Tangent:
         return True
 
     def _difference_of_triangles(self) -> Matrix:
-        """Angular rows less their transpose times EI/ℓ, n_a×n_a, N m, of wrenches at points: products of few rows."""
+        """Angular rows less their transpose, times EI/ℓ, n_a×n_a, N m, by wrenches at points: products of few rows."""
         statics = self.igm.pulled
         difference = ca.DM(self.angular_size, self.angular_size)
         for follower in (False, True):
@@ -404,7 +404,7 @@ class Tangent:
 
     @property
     def moments_pass(self) -> bool:
-        """Whether intervals that turn pass moments on."""
+        """Whether there are intervals that turn and moments for them to transmit."""
         return self.igm.pulled.interval_moment is not None and bool(self.kernels.axes)
 
     @property
@@ -422,7 +422,7 @@ class Tangent:
         pulled = with_product(turning.T @ passing, second, self._turns)
         unit = self.rod.energy_unit
         if self.in_loops:
-            # The constants are those of rods of any stiffness, that may share code.
+            # Rods of any stiffness have these constants, so that they can share code.
             return (self.turn_matrix.unfolded.T @ pulled) / -unit
         return (self.turn_matrix / -unit).T @ pulled
 
@@ -447,17 +447,17 @@ class Tangent:
         beyond = summed(parts)
         if beyond is None:
             return variation
-        # An interval feels what acts beyond it: sums from the tip.
+        # An interval transmits all loads beyond it: sums from the tip.
         return variation + reversed_places(cumulative_sum(reversed_places(beyond, count), count), count)
 
     @cached_property
     def _turned(self) -> TurnedWrenches:
-        """How wrenches vary that follow their sections."""
+        """Variations of the wrenches that follow their sections."""
         return TurnedWrenches(self.igm.pulled, self.rotation, self._about_one_axis)
 
     @property
     def _about_one_axis(self) -> bool:
-        """Whether the rod turns about one axis: rotations commute, and a couple works on their angle."""
+        """Whether the rod turns about one axis: rotations commute, and a couple has the potential −c θ."""
         return len(self.kernels.axes) == 1
 
     def _linear_rows(self, component: int) -> Matrix:
@@ -468,7 +468,7 @@ class Tangent:
         return self._work_on(component, cross(self.shape.directors[component - 3], covector), self.rotation)
 
     def _following_rows(self, component: int, force: Matrix) -> Matrix:
-        """Rows of following forces, which vary by δn̂: −ℓ Φᵀ d·δn̂."""
+        """Rows of follower forces, which vary by δn̂: −ℓ Φᵀ d·δn̂."""
         return self._work_on(component, self.shape.directors[component - 3], force)
 
     def _work_on(self, component: int, vectors: Matrix, variation: Matrix) -> Matrix:
@@ -506,11 +506,11 @@ class Tangent:
 
 
 def _mirrored(matrix: Matrix) -> Matrix:
-    """The upper triangle and its mirror."""
+    """The symmetric matrix with the upper triangle of a matrix."""
     return ca.triu2symm(ca.triu(matrix))
 
 
 def _with_base(part: Matrix) -> Matrix:
-    """Variations of all distinct sections: the base, which does not vary, comes first."""
+    """Variations of all distinct sections; the base, which does not vary, comes first."""
     base = ca.DM(1, part.shape[1])
     return ca.vertcat(base, part)

@@ -1,9 +1,9 @@
 """Rotation along the rod, from base to tip: R' = ℓ R K^, report (1.9), (1.10), (2.17).
 
-The default integrates by products of exponentials: one Magnus increment between neighbouring nodes. A quaternion
-is a unit quaternion to rounding, the cost grows with the number of nodes, and the derivative of the discrete
-rotations is exact and cheap: δθ_{i+1} = δθ_i + R_i T(Ω_i) δΩ_i. The literal linear system of chapter 3 is the other
-member, kept as the oracle. See docs/theory.md section 4.
+The default integrates by products of exponentials: one Magnus increment between neighbouring nodes. Quaternions have
+norm 1 to rounding, the cost is in proportion to the number of nodes, and the derivative of the discrete rotations is
+exact and cheap: δθ_{i+1} = δθ_i + R_i T(Ω_i) δΩ_i. The literal linear system of chapter 3 is the alternative, kept as a
+reference for tests. See docs/theory.md section 4.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.strain import DiscreteRod, Ratio, per_reference_length
 
 ARGUMENTS = ["turn", "omega", "factors", "rotation", "moment"]
-"""Arguments of the kernels of an interval, the members of their symbols."""
+"""Arguments of the kernels of an interval: names of the members of :class:`IntervalSymbols`."""
 
 IDENTITY = ca.DM([1, 0, 0, 0])
 """Quaternion of the base section."""
@@ -31,7 +31,7 @@ IDENTITY = ca.DM([1, 0, 0, 0])
 
 @dataclass(frozen=True)
 class IntervalKernels:
-    """Functions of one interval between neighbouring nodes, made once for a rod.
+    """Functions of one interval between neighbouring nodes, written once for a rod.
 
     Their argument ``turn`` holds the Taylor coefficients of the turn of the interval: for l = 1, 2, … the
     components about the rod's turning axes, rad.
@@ -79,8 +79,8 @@ class IntervalKernels:
 
     @cached_property
     def rotation_pattern(self) -> ca.Sparsity:
-        """Sparsity of a rotation matrix of the rod, 3×3: a rod that turns about one axis leaves that axis alone."""
-        # The pattern of one increment is that of all products of increments.
+        """Sparsity of a rotation matrix of the rod, 3×3: a rod that turns about one axis has a sparse one."""
+        # All products of increments have the pattern of one increment.
         pattern = self.increment.sparsity_out(0)
         quaternion = ca.SX.sym("quaternion", pattern)
         matrix = quaternion_to_matrix(quaternion)
@@ -91,7 +91,7 @@ class IntervalKernels:
         """The map (turn, omega, factors, rotation, moment) ↦ (R T ∂Ω/∂turn)ᵀ moment: generalised moment of an interval.
 
         ``omega`` and ``factors`` are results of :attr:`increment`, ``rotation`` is the matrix R of the section at which
-        the interval begins, ``moment`` what passes the interval, 3×1, N m, base frame.
+        the interval begins, ``moment`` is transmitted by the interval, 3×1, N m, base frame.
         """
         a = self.symbols
         omega = self.rotation_vector
@@ -111,7 +111,7 @@ class IntervalKernels:
         """
         a = self.symbols
         omega = self.rotation_vector
-        # V is that of the increment seen from the base: Ω turned by R.
+        # V belongs to the increment in base axes: Ω turned by R.
         turned = replace(a.increment, omega=a.rotation @ a.increment.omega)
         stiffness = turned.stiffness(a.moment)
         # H holds Tᵀ Rᵀ moment fixed: a symbol while it is differentiated.
@@ -182,9 +182,9 @@ class IntervalSymbols:
     Attributes:
         turn: Taylor coefficients of the turn.
         omega: rotation vector of the interval.
-        factors: of the derivatives of its rotation.
-        rotation: of the section at which it begins, 3×3.
-        moment: what passes the interval, 3×1.
+        factors: factors of the derivatives of its rotation.
+        rotation: rotation of the section at which it begins, 3×3.
+        moment: moment that the interval transmits, 3×1.
     """
 
     turn: ca.SX
@@ -195,7 +195,7 @@ class IntervalSymbols:
 
     @property
     def listed(self) -> list[ca.SX]:
-        """All, in the order of ARGUMENTS."""
+        """All symbols in the order of ARGUMENTS."""
         return [getattr(self, name) for name in ARGUMENTS]
 
     @property
@@ -224,7 +224,7 @@ def interval_turns(rod: DiscreteRod, q: Matrix, ratio: Ratio = None) -> Matrix:
 
 
 def largest_turn(rod: DiscreteRod, q: Matrix, ratio: Ratio = None) -> Matrix:
-    """Largest turn of an interval between nodes, 1×1, rad: a bound on ∫|K| ds over it, from the Taylor coefficients."""
+    """Largest turn of an interval, 1×1, rad: an upper bound on ∫|K| ds from the Taylor coefficients."""
     turns = interval_turns(rod, q, ratio)
     coefficients = ca.vertsplit(turns, len(rod.properties.turning_axes))
     total = ca.DM.zeros(1, turns.shape[1])
@@ -243,7 +243,7 @@ class IntervalRotations:
         turn: Taylor coefficients, size×intervals, rad.
         quaternion: increments, 4×intervals.
         omega: rotation vectors, 3×intervals, rad.
-        factors: of their derivatives, 2×intervals.
+        factors: factors of their derivatives, 2×intervals.
     """
 
     turn: Matrix
@@ -275,7 +275,7 @@ def section_quaternions(
         return ca.repmat(IDENTITY, 1, len(rod.grid.left_ends) + 1)
     if intervals is None:
         return _permuted_transport(rod, q, ratio)
-    # Quaternions of a rod that turns about one axis keep two entries: the product of such has the same two.
+    # Quaternions of a rod that turns about one axis have two entries, and so have their products.
     pattern = interval_kernels(rod).increment.sparsity_out(0)
     start = ca.project(IDENTITY, pattern)
     count = intervals.quaternion.shape[1]
@@ -287,7 +287,7 @@ def section_quaternions(
 
 @lru_cache(maxsize=64)
 def _chain(entries: tuple[int, ...], count: int) -> ca.Function:
-    """Products of so many quaternions one after the other, which share a pattern that is closed under products."""
+    """Cumulative products of quaternions with a common pattern of ``entries`` that is closed under products."""
     pattern = ca.Sparsity.compressed(entries)
     rotation = ca.SX.sym("rotation", pattern)
     increment = ca.SX.sym("increment", pattern)
@@ -309,7 +309,7 @@ def _permuted_transport(rod: DiscreteRod, q: Matrix, ratio: Ratio) -> Matrix:
             matrix = quaternion_rate_matrix(curvature[:, node])
             rates.append(width * rod.length / 2 * matrix)
         none = [ca.DM.zeros(4, 1)] * len(rates)
-        # An element begins where the last one ended.
+        # An element begins at the end of the element before it.
         begins = sections[-1][:, -1]
         solution = permuted_system(rates, none).solve(begins)
         sections.append(solution[:, 1:])

@@ -1,4 +1,4 @@
-"""How wrenches vary that follow their sections, as these turn: docs/theory.md section 7.
+"""Variations of the wrenches that follow their sections as these turn: docs/theory.md section 7.
 
 Fields of M nodes are stacked component by component as in maths/block_operators.py, one column for each variation.
 """
@@ -25,7 +25,7 @@ class TurnedWrenches:
     Attributes:
         statics: all wrenches on the rod.
         rotation: δθ of the nodes, base frame, 3M×k, rad.
-        about_one_axis: whether the rod turns about one axis, where a couple turns into itself.
+        about_one_axis: whether the rod turns about one axis, so that a couple does not change.
     """
 
     statics: Statics
@@ -34,13 +34,13 @@ class TurnedWrenches:
 
     @cached_property
     def force(self) -> Matrix | None:
-        """δn̂ = Sᵀ δf of all forces that follow, base frame, 3M×k, N; None without any."""
+        """δn̂ = Sᵀ δf of all follower forces, base frame, 3M×k, N; None without any."""
         wrenches = [wrench for wrench in self.statics.wrenches if wrench.follower]
         return summed([self._force_of(wrench, wrench.force) for wrench in wrenches if wrench.force is not None])
 
     @property
     def moments(self) -> list[Matrix]:
-        """Derivatives of the moments t × n̂ + ĉ at the nodes with the turns, base frame, 3M×k each, N m."""
+        """Derivatives of the moments t × n̂ + ĉ at the nodes by the turns, base frame, 3M×k each, N m."""
         moments = []
         if self.force is not None:
             moments.append(hat_operator(self.statics.shape.tangent) @ self.force)

@@ -22,7 +22,7 @@ class Viscosity:
 
     Attributes:
         shape: the rod's shape.
-        rates: of its strain coordinates.
+        rates: rates of its strain coordinates.
     """
 
     shape: Shape
@@ -43,14 +43,14 @@ class Viscosity:
 
     @cached_property
     def damping(self) -> Matrix:
-        """Derivative of the force with q̇, n×n, s."""
+        """Derivative of the force by q̇, n×n, s."""
         if self.shape.ratio is None:
             return self._matrix
         return self._matrix / self.shape.ratio
 
     @cached_property
     def stiffness(self) -> Matrix:
-        """Derivative of the force with q, n×n: none unless the rod's length changes."""
+        """Derivative of the force by q, n×n: zero unless the rod's length changes."""
         if self.shape.ratio is None:
             return ca.DM(*self._matrix.shape)
         return -self.damping * self.shrinking

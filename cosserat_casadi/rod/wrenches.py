@@ -1,7 +1,7 @@
-"""Wrenches on a rod: the records in which every effect speaks to the mechanics.
+"""Wrenches on a rod: the records by which every load acts on the mechanics.
 
 Coordinates are in the axes of the rod's base for a dead wrench and in the axes of the loaded section for a follower.
-A part that does not exist is None and costs nothing.
+A missing part is None and costs nothing.
 """
 
 from __future__ import annotations
@@ -43,8 +43,8 @@ class LineWrench:
     Attributes:
         force: 3×k coefficients, N/m, or None.
         moment: 3×k coefficients, N, or None.
-        profiles: values of the k profiles at the nodes, shape (k, M), without unit, or expressions, where one column
-            may stand for all nodes; None where the coefficients are the values at the M nodes.
+        profiles: dimensionless values of the k profiles at the nodes, shape (k, M), or expressions, of which one column
+            may stand for all nodes; None if the coefficients are the values at the M nodes.
         follower: whether the wrench turns with the sections.
     """
 
@@ -58,12 +58,12 @@ class LineWrench:
 
 
 Wrench = WrenchAt | LineWrench
-"""A wrench whose direction does not depend on where its section is."""
+"""A wrench that does not depend on the position of its section: a dead wrench or a follower."""
 
 
 @dataclass(frozen=True)
 class SeenMotion:
-    """Motion of the sections of a rod as a body sees it, in the axes of the base of the rod.
+    """Motion of the sections of a rod relative to a body, in the axes of the rod's base.
 
     Attributes:
         velocity: 3×M, m/s.
@@ -74,30 +74,30 @@ class SeenMotion:
     angular_velocity: Matrix
 
     def undamped(self, rate: str) -> Matrix:
-        """A rate of the nodes, 3×M, as :meth:`RodMotion.undamped`: damping by mass changes no velocity."""
+        """A rate of the nodes, 3×M, see :meth:`RodMotion.undamped`: damping by mass does not change velocities."""
         field: Matrix = getattr(self, rate)
         return field
 
 
 @dataclass(frozen=True)
 class PoseWrench:
-    """A wrench that depends on the position or the rotation of its section, in any way but turning with it.
+    """A wrench that depends on the position or the rotation of its section otherwise than as a follower.
 
     Attributes:
         at: abscissa X of the section, an element end of the grid; None for a wrench per metre of undeformed length.
         span: abscissae X between which a wrench per metre acts, element ends of the grid.
         kernel: force and moment as a function of a section's pose.
-        base_position: position of the rod's base in the axes that the kernel is written in, the world's or the axes of
-            the body that bears the wrench, 3×1, m.
+        base_position: position of the rod's base in the axes of the kernel, which are those of the world or of the body
+            that bears the reaction, 3×1, m.
         base_rotation: rotation from the base into these axes, 3×3.
-        parameters: what the kernel depends on at run time, p×1.
+        parameters: run-time parameters of the kernel, p×1.
         data: numbers of the load at its sections, such as values of profiles, shape (d, k).
         scale: factor on force, moment and energy.
-        motion: of the rod, or as a body sees it; None at rest, and for a kernel that does not depend on rates.
-        growth: gives the power of the load factor by which it grows on the way from the unloaded scene; None is 1.
-        borne_by: name of the body that bears the opposite wrench; None where the world does.
-        sections: at which a wrench per metre is summed, where that is not at the nodes; it is then a force that hangs
-            on the position of its section, and on the velocity, alone.
+        motion: motion of the rod, or relative to a body; None at rest, and for a kernel without rates.
+        growth: function that returns the power of the load factor by which it grows on the load path; None is 1.
+        borne_by: name of the body that bears the reaction; None for the world.
+        sections: sections at which a wrench per metre is summed, None for the nodes; with sections it must be a force
+            that depends on the position and velocity of its section alone.
     """
 
     at: Scalar | None
@@ -122,7 +122,7 @@ RodLoad = Wrench | PoseWrench
 
 
 def _check_vectors(force: Matrix | None, moment: Matrix | None, columns: int | None) -> None:
-    """Refuse vectors of another shape: CasADi would broadcast them in silence."""
+    """Refuse vectors of another shape, which CasADi would broadcast silently."""
     if force is not None:
         check_shape("force", force, 3, columns)
     if moment is not None:

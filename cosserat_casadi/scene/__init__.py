@@ -1,6 +1,6 @@
 """The scene file: records, rules, reading, writing.
 
-A new kind is a record that derives from the one of its family, and a class of the mechanics that names this record.
+A new kind is a record that derives from its family's record, and a class of the mechanics that names this record.
 `cosserat_casadi.model.registry.register` makes both known.
 """
 

@@ -19,7 +19,7 @@ MOST_NODES = 1000
 """Intervals of a grid that a scene may ask for."""
 
 MOST_SECTIONS = 1500
-"""Sections of an element at which a scene may ask for sums of layers."""
+"""Most sections of an element, at which layers are summed, that a scene may ask for."""
 
 Modes = Annotated[Whole, Field(ge=1, le=MOST_MODES)]
 ModesChoice = Annotated[
@@ -29,7 +29,7 @@ ModesChoice = Annotated[
 
 
 def _ascending(value: str) -> str:
-    """Refuse a text that is not the name of a column and two numbers in their order."""
+    """Refuse a text that is not the name of a column and two ascending numbers."""
     column, _, ends = value.rpartition("=")
     low, _, high = ends.partition(":")
     lower, upper = finite_number(low), finite_number(high)
@@ -113,7 +113,7 @@ shape = true
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """Refuse what says nothing without modes, nodes or rotation of all rods."""
+        """Refuse keys that have no meaning without modes, nodes or rotation for all rods."""
         if "chosen_for" in given and "modes" not in given:
             yield Fault(("chosen_for",), "stands without modes", "leave it out: it says what modes were chosen for")
         if "sections" in given and "nodes" not in given:
@@ -123,7 +123,7 @@ shape = true
 
     @property
     def chosen_ranges(self) -> dict[str, tuple[float, float]]:
-        """Lower and upper end of what modes and nodes were chosen for, by column; empty where nothing says so."""
+        """Lower and upper ends of the ranges that modes and nodes were chosen for, by column; empty without any."""
         ranges = {}
         for text in self.chosen_for or ():
             column, _, ends = text.rpartition("=")
@@ -133,7 +133,7 @@ shape = true
 
     @property
     def fixed_by_hand(self) -> bool:
-        """Whether the scene fixes modes, nodes or rotation, and no choice for ranges did."""
+        """Whether the scene fixes modes, nodes or rotation other than by a choice for ranges."""
         return self.fixed and self.chosen_for is None
 
     @property
@@ -145,5 +145,5 @@ shape = true
 
     @property
     def binds(self) -> bool:
-        """Whether the tolerance is asked for: a tolerance that nobody has written asks nothing of fixed modes."""
+        """Whether the tolerance applies: a default tolerance does not apply to fixed modes."""
         return not self.fixed or "tolerance" in self.model_fields_set

@@ -1,6 +1,6 @@
 """Actuators: tendons, pressure chambers and muscles along a rod.
 
-A kind is a record here and a class in `actuators/` that gives the quantity its effort works on.
+A kind is a record here and a class in `actuators/` that gives the quantity on which its effort does work.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class ActuatorRecord(Entry):
 
     @property
     def has_kinks(self) -> bool:
-        """Whether its pull may have a kink in its slope anywhere along the rod."""
+        """Whether its pull may have a kink along the rod."""
         return False
 
 
@@ -76,7 +76,7 @@ PULLS = {"in": 1.0, "out": -1.0}
 
 
 def _faults_of_holes(given: Table) -> Iterator[Fault]:
-    """Holes ascend within the span; a routing through disks has become holes where there are any."""
+    """Holes ascend within the span; reading has turned a routing through disks into holes, if there are disks."""
     if given.get("routing") == "disks":
         problem = "stands beside holes" if "holes" in given else "no disk of its rod is in its span"
         yield Fault(("routing",), problem, "give [[disks]] with its rod, or holes")
@@ -187,7 +187,7 @@ offset = [1.5e-3, 0.0]
         yield from _faults_of_holes(given)
         yield from one_of("tension", "length", given)
         yield from one_of("offset", "helix", given)
-        # Only an unknown tension can be held at zero from below.
+        # Only an unknown tension can have zero as its lower bound.
         if given.get("slack") is True and "length" not in given:
             yield Fault(("slack",), "is for a tendon of given length", "leave it out: a given tension is what it is")
         if "length" not in given:
@@ -203,23 +203,23 @@ offset = [1.5e-3, 0.0]
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
-        """A course between holes needs the rotations of their sections."""
+        """A straight course between holes needs the rotations of their sections."""
         if "holes" in given and table_of(scene.get("accuracy")).get("rotation") == "permuted":
             problem = "does not go with accuracy.rotation = 'permuted'"
             yield Fault(("holes",), problem, "use a product of exponentials, or a continuous course")
 
     @property
     def has_kinks(self) -> bool:
-        """A continuous cable that rubs has one where it is straight."""
+        """A continuous cable with friction has a kink where it is straight."""
         return self.friction > 0.0 and self.holes is None
 
     @classmethod
     def free_fields(cls, given: Table) -> tuple[str, ...]:
-        """Fields that may be free: tension or length, whichever the table has; the direction of friction."""
+        """Fields that may be free: tension or length, by the keys of the table; the direction of friction."""
         fields = [field for field in ("tension", "length") if field in given]
         if given.get("friction"):
             fields.append("pull")
-        # Where neither is given the table has a fault already; both are known names.
+        # A table with neither has a fault already; both are known names.
         if not fields:
             return tuple(cls.inputs)
         return tuple(fields)
@@ -377,7 +377,7 @@ profile = { base = 1.0, tip = 0.2 }
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
-        """An unloaded curvature is a moment where the stiffness is one number for each strain."""
+        """An unloaded curvature needs a stiffness with one number for each strain, which turns it into a moment."""
         rod = scene.table_named("rods", given.get("rod"))
         law = table_of(rod.get("material")).get("law", "linear")
         if "curvature" in given and (law != "linear" or "stiffness_matrix" in rod):
@@ -386,11 +386,11 @@ profile = { base = 1.0, tip = 0.2 }
             )
 
     def parameter_refusal(self, key: str) -> tuple[str, str] | None:
-        """Knots stay where they are."""
+        """Knots cannot be parameters."""
         if key == "knots":
             return "is where the values of profile stand", "let the values be parameters: profile"
         return super().parameter_refusal(key)
 
 
-# The type checker knows the kinds that ship; a scene may hold any that is registered.
+# The type checker knows the kinds that ship; a scene may have any registered kind.
 Actuator = Annotated[Tendon | Chamber | Muscle, ACTUATORS]

@@ -9,11 +9,11 @@ from cosserat_casadi.scene.constraint_records import JOINTS, SUPPORTS
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, numbers_of, shown, table_of
 
 TIP = 1.0
-"""Abscissa of a tip, where a joint is unless it says otherwise."""
+"""Abscissa of a tip, the default place of a joint."""
 
 
 def bases_on_nothing(scene: SceneTables) -> Iterator[Fault]:
-    """A rod starts on a rod that is not there, on itself, or on one that it carries."""
+    """A rod starts on an unknown rod, on itself, or on a rod that it carries."""
     rods = scene.named("rods")
     carriers = _carriers(scene)
     for name, carrier in carriers.items():
@@ -42,7 +42,7 @@ def _carriers(scene: SceneTables) -> dict[str, str]:
 
 
 def _circle(carriers: Mapping[str, str], name: str) -> list[str]:
-    """The rods passed going from carrier to carrier until the first comes again; none where it does not."""
+    """The rods from carrier to carrier until the first one is reached again; empty if it is not."""
     # A dictionary keeps the order, and finds a rod at once among thousands.
     passed = {name: None}
     carrier = carriers.get(name)
@@ -55,7 +55,7 @@ def _circle(carriers: Mapping[str, str], name: str) -> list[str]:
 
 
 def rods_that_spin(scene: SceneTables) -> Iterator[Fault]:
-    """The motion of a straight rod that may turn about its tangent is not determined without inertia about it."""
+    """A straight rod that may turn about its tangent needs inertia about it, or its motion is not determined."""
     if scene.get("simulation") is None:
         return
     carriers = _carriers(scene).values()
@@ -70,7 +70,7 @@ def rods_that_spin(scene: SceneTables) -> Iterator[Fault]:
 
 
 def _turns_about_its_axis(scene: SceneTables, name: str, rod: Table) -> bool:
-    """Whether nothing but balls and pins, which are on its axis, holds a rod."""
+    """Whether only spherical joints and pins, which are on its axis, hold a rod."""
     floats = table_of(rod.get("base")).get("free") is True
     for key, kinds in (("supports", SUPPORTS), ("joints", JOINTS)):
         for _, holder in scene.tables(key):
@@ -84,20 +84,20 @@ def _turns_about_its_axis(scene: SceneTables, name: str, rod: Table) -> bool:
 
 
 def bodies_that_nobody_holds(scene: SceneTables) -> Iterator[Fault]:
-    """A body has no joint, or bodies are joined to each other alone: nothing would keep them where they are."""
+    """A body has no joint, or bodies are joined to each other alone: nothing would hold them."""
     held: set[str] = set()
     links = [links_of(joint) for _, joint in scene.tables("joints")]
     more = True
     while more:
         before = len(held)
-        # What is no body, a rod or the world, holds.
+        # A rod or the world holds a body.
         held |= {name for link in links if any(end is None or end in held for end in link) for name in link if name}
         more = len(held) > before
     for name, (i, _) in scene.named("bodies").items():
         if name not in held:
             named = any(name in link for link in links)
             reason = "its joints lead to no rod and not to the world" if named else "no joint names it"
-            # As JSON writes it, which TOML reads alike: a faulty name may hold anything.
+            # Written as JSON, which TOML reads too: a faulty name may contain anything.
             remedy = f"give it to a rod: [[joints]] with body = {json.dumps(name)} and a rod"
             yield Fault(("bodies", i), f"nobody holds the body {shown(name)}: {reason}", remedy)
 
@@ -105,20 +105,20 @@ def bodies_that_nobody_holds(scene: SceneTables) -> Iterator[Fault]:
 def links_of(joint: Table) -> tuple[str | None, str | None]:
     """The bodies at the two ends of a joint; None for a rod or the world."""
     bodies = (joint.get("body"), table_of(joint.get("carries")).get("body"))
-    # A faulty name may be what no set can hold.
+    # A faulty name may be unhashable.
     first, second = (body if isinstance(body, str) else None for body in bodies)
     return first, second
 
 
 def sections_held_twice(scene: SceneTables) -> Iterator[Fault]:
-    """A tip has a support and a joint, or a section has two joints; bodies that ride on it hold nothing."""
+    """A tip has a support and a joint, or a section has two joints; joints of riding bodies do not count."""
     holders: dict[tuple[str, float], str] = {}
-    # As the model decides: what bears an obstacle, or has a velocity, floats.
+    # As in the model, a body with an obstacle, or with a velocity, floats.
     floating = [table.get("body") for key in ("obstacles", "velocities") for _, table in scene.tables(key)]
     of_bodies = [name for _, joint in scene.tables("joints") for name in links_of(joint)]
     for i, support in scene.tables("supports"):
         name = support.get("rod")
-        # Two supports of one tip are another rule's; the first of them counts.
+        # Another rule refuses two supports of one tip; the first of them counts here.
         if isinstance(name, str):
             holders.setdefault((name, TIP), f"supports[{i}]")
     for i, joint in scene.tables("joints"):

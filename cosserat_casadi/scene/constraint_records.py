@@ -1,4 +1,4 @@
-"""Bodies, and what holds rods: supports hold their tips in the world, joints hold sections at bodies.
+"""Bodies and constraints: supports hold tips of rods in the world, joints hold sections of rods at bodies.
 
 A kind of support or joint is a record here and a class in `constraints/` that says which directions it holds.
 """
@@ -67,12 +67,12 @@ class SupportRecord(Entry):
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
-        """The rod reaches its support: judged where both are sound and the rod starts in the world."""
+        """The rod reaches its support; tested if both are without faults and the rod starts in the world."""
         rod = named_rod(given.get("rod"), scene)
         support = sound(cls, given)
         if rod is None or support is None:
             return
-        # The base of a carried or free rod is an unknown: what its tip reaches is for the model to find out.
+        # The base of a carried or free rod is an unknown: the model finds out what its tip reaches.
         if rod.base.rod is not None or rod.base.free:
             return
         for fault in out_of_reach(rod, support.position, support.orientation):
@@ -80,7 +80,7 @@ class SupportRecord(Entry):
 
     @property
     def orientation(self) -> Quadruple | None:
-        """The prescribed orientation of the tip, w, x, y, z; None where the tip may turn."""
+        """The prescribed orientation of the tip, w, x, y, z; None if the tip may turn."""
         return None
 
 
@@ -126,7 +126,7 @@ Support = Annotated[ClampedSupport | PinnedSupport, SUPPORTS]
 # Bodies and joints
 
 INERTIA_SLACK = 1e-9
-"""Share of the largest entry of an inertia that is put down to rounding."""
+"""Share of the largest entry of an inertia that may be rounding."""
 
 
 def _moments_or_matrix(value: Any) -> str:
@@ -136,12 +136,12 @@ def _moments_or_matrix(value: Any) -> str:
 
 
 def _of_a_body(value: Triple | tuple[Triple, Triple, Triple]) -> Triple | tuple[Triple, Triple, Triple]:
-    """Refuse an inertia that no distribution of mass has."""
+    """Refuse an inertia that no distribution of mass can have."""
     inertia = _matrix(value)
     scale = np.abs(inertia).max()
     if scale == 0.0:
         return value
-    # Relative to the largest entry, sums and differences of the largest numbers stay numbers.
+    # Relative to the largest entry, so that sums and differences do not overflow.
     relative = inertia / scale
     if np.abs(relative - relative.T).max() > INERTIA_SLACK:
         raise refusal([Fault((), "must be symmetric", "the inertia about the centre of mass, in the body's axes")])
@@ -149,7 +149,7 @@ def _of_a_body(value: Triple | tuple[Triple, Triple, Triple]) -> Triple | tuple[
     smallest, middle, largest = np.linalg.eigvalsh(relative)
     if smallest < -INERTIA_SLACK:
         raise refusal([Fault((), f"must have no negative principal moment, got {smallest * scale:.6g}")])
-    # Each moment is the integral of two squared distances: two of the moments hold all three.
+    # Each moment is the integral of two squared coordinates: the sum of two moments is at least the third.
     if largest > smallest + middle + INERTIA_SLACK:
         listed_moments = ", ".join(f"{moment * scale:.6g}" for moment in (smallest, middle, largest))
         problem = f"no body has the principal moments {listed_moments}"
@@ -261,9 +261,9 @@ carries = { body = "platform", position = [0, 0, 0.1] }     # instead of rod
 
 
 class JointRecord(Oriented, Entry):
-    """A joint of a section of a rod with a body or the world, or of the base of a rod with what its base names.
+    """A joint of a rod's section with a body or the world, or of a rod's base with what the base's table names.
 
-    Instead of a section it may hold a body: in another body, or in the world.
+    Instead of a section it may hold a body, at another body or in the world.
 
     Attributes:
         turns_freely: whether the section may turn about every axis through it.
@@ -337,7 +337,7 @@ class JointRecord(Oriented, Entry):
             yield Fault(("at",), problem, "leave base.position out, or hold a body there by a fixed joint")
 
     def parameter_refusal(self, key: str) -> tuple[str, str] | None:
-        """The base of a rod is jointed or not, whatever the parameters."""
+        """Parameters cannot change whether the joint is at the base of a rod."""
         if key == "at" and self.holds_base:
             return "is the base of its rod", "only the place of a joint inside a rod can be a parameter"
         return super().parameter_refusal(key)
@@ -345,17 +345,17 @@ class JointRecord(Oriented, Entry):
     @property
     def holds_base(self) -> bool:
         """Whether the jointed section is the base of its rod, which then floats."""
-        # An abscissa that is an expression of parameters is that of a section inside.
+        # An abscissa that is an expression of parameters belongs to a section inside the rod.
         return isinstance(self.at, float) and self.at == 0.0
 
     @property
     def at_base(self) -> bool:
-        """Whether the joint holds the base of its rod to what the base names, the world or another rod."""
+        """Whether the joint holds the base of its rod to the world or another rod, as the base's table says."""
         return self.body is None and self.holds_base
 
     @property
     def places(self) -> tuple[JointRecord | CarriedBody, ...]:
-        """The records that say where it is in the bodies at its ends: itself, and the body that it carries."""
+        """The records with its places in the bodies at its ends: itself, and the carried body."""
         ends = (None if self.body is None else self, self.carries)
         return tuple(end for end in ends if end is not None)
 
@@ -371,7 +371,7 @@ class JointRecord(Oriented, Entry):
 
     @property
     def keeps_place(self) -> bool:
-        """Whether the joint, with what acts along it, leaves no motion free: a spring or a drive holds it."""
+        """Whether the joint leaves no motion free, or a spring or a drive holds the free coordinate."""
         return False
 
 
@@ -395,7 +395,7 @@ position = [0.02, 0, 0]
 
     @property
     def keeps_place(self) -> bool:
-        """True: a fixed joint leaves no motion free."""
+        """True, since a fixed joint leaves no motion free."""
         return True
 
 
@@ -424,7 +424,7 @@ class AxisJoint(JointRecord):
 
     Attributes:
         coordinate_key: key that prescribes the coordinate.
-        effort_key: key of the motor that works on it.
+        effort_key: key of the motor that does work on it.
     """
 
     coordinate_key: ClassVar[str]
@@ -449,7 +449,7 @@ class AxisJoint(JointRecord):
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """A drive says where the coordinate is: nothing else acts on it. Inputs have a name. Stops leave a range."""
+        """A drive prescribes the coordinate: nothing else acts on it. Inputs have a name. Stops leave a range."""
         yield from super().conflicts(given)
         if cls.coordinate_key in given:
             acting = (cls.effort_key, "stiffness", "rest", "damping", "friction", *STOP_KEYS)
@@ -474,7 +474,7 @@ class AxisJoint(JointRecord):
             yield Fault(("name",), "missing", "a drive or a motor is an input, which the joint names")
 
     def parameter_refusal(self, key: str) -> tuple[str, str] | None:
-        """Defaults act where something acts along the coordinate, and no drive prescribes it."""
+        """A default may be a parameter only if something acts along the coordinate and no drive prescribes it."""
         acts = self.has_coordinate and not self.prescribed
         if key in ("stiffness", "rest", "damping", "friction", "slip_rate") and not acts:
             return "is not given in the scene", "give it a value: the parameter's default"
@@ -495,7 +495,7 @@ class AxisJoint(JointRecord):
     @property
     def keeps_place(self) -> bool:
         """Whether a spring or a drive holds the coordinate."""
-        # A stiffness that is an expression of parameters is one.
+        # A stiffness that is an expression of parameters counts as a spring.
         return self.prescribed or not (isinstance(self.stiffness, float) and self.stiffness == 0.0)
 
     @property

@@ -1,4 +1,4 @@
-"""Rows of disks on rods: masses that are fixed to sections, and add no unknowns."""
+"""Rows of disks on rods: masses that are fixed to sections and add no unknowns."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ def lead_through_disks(tables: dict[str, Any]) -> None:
         holes = [at for at in places if len(span) == 2 and span[0] <= at <= span[1]]
         if holes:
             tendon["holes"] = holes
-        # A row that is faulty itself says so; its tendons are not told besides that there is none.
+        # A faulty row has its own fault; its tendons are not also said to lack disks.
         if holes or None in rows:
             del tendon["routing"]
 
 
 def tables_of(tables: dict[str, Any], key: str) -> list[dict[str, Any]]:
-    """The tables of a list, which may be faulty."""
+    """The tables in a list of the scene, which may be faulty."""
     return [table for table in list_of(tables.get(key)) if isinstance(table, dict)]
 
 

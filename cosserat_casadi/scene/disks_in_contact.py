@@ -1,4 +1,4 @@
-"""Disks that touch planes exactly: written as bodies without mass, which are disks, each fixed to its section."""
+"""Disks in exact contact with planes: reading writes each as a disk-shaped body without mass, fixed to its section."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SEAT = {"kind", "body", "rod", "at"}
 def seat_disks(tables: dict[str, Any]) -> None:
     """Write disks that touch obstacles without a width as bodies without mass, each fixed to its section.
 
-    Rows whose sizes or places are parameters are left for the obstacle to refuse.
+    Rows with sizes or places that are parameters are left as they are: the obstacle refuses them.
     """
     if not all(isinstance(tables.get(key, []), list) for key in ("bodies", "joints")):
         return
@@ -55,7 +55,7 @@ def seat_disks(tables: dict[str, Any]) -> None:
 
 
 def _seated(tables: dict[str, Any], row: Disks) -> list[str]:
-    """Put bodies in the sections of a row of disks; their names."""
+    """Put bodies in the sections of a row of disks and return their names."""
     names = []
     for number, at in enumerate(row.places):
         size = {"radius": row.radius, "thickness": row.thickness}
@@ -66,12 +66,12 @@ def _seated(tables: dict[str, Any], row: Disks) -> list[str]:
 
 
 def _unseat(tables: dict[str, Any], row: str) -> bool:
-    """Write bodies that an earlier reading wrote for a row as the row again, whose sizes and places may have changed.
+    """Replace bodies that an earlier reading wrote for a row by the row, with its present sizes and places.
 
-    The row is written at the obstacles that name all of these bodies; at others their names stay.
+    Obstacles that name all of these bodies name the row again; other obstacles keep the names of the bodies.
 
     Returns:
-        whether there were such bodies, and no obstacle that the row is written at.
+        whether there were such bodies, but no obstacle that names the row.
     """
     bodies = [
         body

@@ -1,4 +1,4 @@
-"""A scene whose contact is smooth as the one whose contact is exact: to check what the width has changed."""
+"""The scene with exact contact in place of smooth contact, to check the effect of the widths."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from cosserat_casadi.scene.writing import scene_tables
 
 
 def with_exact_contact(scene: Scene) -> Scene:
-    """The scene whose obstacles have no width: what solves it finds the contacts themselves.
+    """The scene with obstacles without widths, for which a solve searches the contacts.
 
     Raises:
-        SceneError: exact contact of these rods is not found.
+        SceneError: exact contact of these rods is not supported.
     """
     tables = scene_tables(scene)
     gone = set[str]()

@@ -1,7 +1,7 @@
-"""Open families: the kinds of loads, actuators, supports, joints, and of whatever else a word tells apart.
+"""Open families of records: kinds of loads, actuators, supports, joints and others that a word tells apart.
 
-A kind is registered once. Unions, the words that an error lists, references, inputs, the JSON schema and the reference
-page are made from the family when they are asked for, so that a kind that is registered late is a kind like any other.
+A kind is registered once. Unions, the words in error messages, references, inputs, the JSON schema and the reference
+page are made from the family on demand, so that a kind that is registered late is treated like any other.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ Member = TypeVar("Member", bound=Record)
 
 
 class Family(Generic[Member]):
-    """Records that stand in one list or under one key of a scene, told apart by a word.
+    """Records in one list or under one key of a scene that a word tells apart.
 
     It annotates a type: ``Annotated[LoadRecord, LOADS]`` is any record that is registered with ``LOADS``.
 
     Attributes:
-        table: where they stand, such as "loads".
+        table: key of their list, such as "loads".
         key: the key of the word, such as "kind".
-        default: the word of a table that has none; None where it must have one.
+        default: the word of a table without one; None if it must have one.
         records: the record of each word, in the order in which they were registered.
     """
 
@@ -54,7 +54,7 @@ class Family(Generic[Member]):
         return record
 
     def record_of(self, given: Table) -> type[Member] | None:
-        """The record of a table, by its word; None where the word is faulty or missing."""
+        """The record of a table, by its word; None if the word is faulty or missing."""
         word = given.get(self.key, self.default)
         if not isinstance(word, str):
             return None
@@ -65,7 +65,7 @@ class Family(Generic[Member]):
         return core_schema.no_info_plain_validator_function(self._validated)
 
     def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
-        # Only this description is a union: it is made from the kinds that are known now.
+        # Only this description is a union: it is made from the kinds that are registered now.
         choices = {word: _referable(record) for word, record in self.records.items()}
         union = core_schema.tagged_union_schema(choices, discriminator=_no_word)
         return handler(union)
@@ -83,7 +83,7 @@ class Family(Generic[Member]):
         try:
             return record.model_validate(value)
         except ValidationError as error:
-            # The mark says to whoever reads the locations which record they go on in.
+            # The mark tells a reader of the location in which record it goes on.
             mark = f"⟨{word}⟩"
             raise restated(error, below=(mark,)) from None
 
@@ -99,7 +99,7 @@ class Family(Generic[Member]):
 
 
 def _no_word(value: Any) -> None:
-    """The word of a value in a union that is described but never asked for one."""
+    """Discriminator of a union that serves as a description and is never evaluated."""
 
 
 def word_of(record: type[Record], key: str = "kind") -> str:
@@ -109,7 +109,7 @@ def word_of(record: type[Record], key: str = "kind") -> str:
         ValueError: the record does not have one word.
     """
     field = record.model_fields.get(key)
-    # The word is the only value of a Literal, so that pydantic refuses any other.
+    # The word is the only value of a Literal, so that pydantic refuses all others.
     words = () if field is None else get_args(field.annotation)
     if len(words) != 1:
         raise ValueError(f"{record.__name__} needs a field {key} with one word, such as Literal['spring']")
@@ -117,9 +117,9 @@ def word_of(record: type[Record], key: str = "kind") -> str:
 
 
 class Kinds(dict[str, Any]):
-    """The mechanics of the kinds of one family, or of several whose words differ, by these words.
+    """The mechanics of the kinds of one family, or of several families with different words, by word.
 
-    To look up a kind that is registered with the scene format alone raises a `SceneError`.
+    Looking up a kind that is registered with the scene format alone raises a `SceneError`.
     """
 
     def __init__(self, *families: Family[Any]) -> None:
@@ -130,7 +130,7 @@ class Kinds(dict[str, Any]):
         """Make a kind known, to the scene format and to the mechanics.
 
         Args:
-            family: the family that its record joins, if it is not there yet.
+            family: the family that its record joins, if it is not in it yet.
             member: the class of the kind.
 
         Raises:
@@ -199,7 +199,7 @@ def _referable(record: type[Record]) -> CoreSchema:
 
 
 def contents_of(field: FieldInfo) -> Family[Any] | type[Record] | None:
-    """Kind of the tables under a field: one record, a family of records, or None where the field holds no tables."""
+    """Kind of the tables under a field: one record, a family of records, or None for a field without tables."""
     return _contents(field.annotation)
 
 

@@ -1,4 +1,4 @@
-"""Faults of a scene, as data, and the look at its tables before they are records."""
+"""Faults of a scene as data, and access to its tables before they are records."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ Path = tuple[str | int, ...]
 Table = Mapping[str, Any]
 
 PLAIN = (str, int, float)
-"""Classes of values without values inside; to ask for these is faster than to ask for a mapping."""
+"""Classes of values without values inside; this test is faster than the test for a mapping."""
 
 LISTS = (list, tuple)
-"""Classes of arrays; to ask for these is faster than to ask for a sequence."""
+"""Classes of arrays; this test is faster than the test for a sequence."""
 
 LONGEST_TEXT = 60
 """Characters of a text or a key of the file that a message quotes."""
@@ -29,10 +29,10 @@ LARGEST_LENGTH = 1e60
 """Largest length, m, and largest curvature, 1/m: their fourth powers are numbers of double precision."""
 
 SMALLEST_SIZE = 1e-60
-"""Smallest size of a thing, m: so are the fourth powers of its inverse."""
+"""Smallest size, m: the fourth powers of its inverse are numbers of double precision."""
 
 SIZES = frozenset({"length", "radius", "outer_radius", "inner_radius", "width", "height", "diameter"})
-"""Keys of sizes, whatever table they stand in."""
+"""Keys of sizes, in every table."""
 
 LENGTHS = SIZES | {
     *("position", "point", "points", "centre", "from", "to", "offset", "centre_of_mass"),
@@ -41,7 +41,7 @@ LENGTHS = SIZES | {
 """Keys of sizes, of other lengths, of positions, and of curvatures."""
 
 PROFILE_KEYS = ("base", "tip", "legendre", "powers")
-"""Keys of a table of what varies along the rod, below the key of the quantity."""
+"""Keys of a table of values that vary along the rod, below the key of the quantity."""
 
 SINGULAR = {
     "obstacles": "obstacle",
@@ -55,7 +55,7 @@ SINGULAR = {
     "loads": "load",
     "tubes": "tube",
 }
-"""Lists whose entries may have names, and one of what each holds, in the words of an error."""
+"""Lists with named entries, and the word for one entry of each in an error message."""
 
 
 class Fault(NamedTuple):
@@ -64,7 +64,7 @@ class Fault(NamedTuple):
     Attributes:
         path: keys and indices from the record that is checked.
         problem: the fault in words.
-        remedy: what to do about it; empty when the problem says it already.
+        remedy: advice; empty if the problem implies it.
     """
 
     path: Path
@@ -87,7 +87,7 @@ class SceneTables:
         return tuple(self._given)
 
     def get(self, key: str) -> Any:
-        """The value of a key; None where it is left out."""
+        """The value of a key; None if it is left out."""
         return self._given.get(key)
 
     def tables(self, key: str) -> list[tuple[int, Table]]:
@@ -108,19 +108,19 @@ class SceneTables:
         return self._named[key]
 
     def table_named(self, key: str, name: Any) -> Table:
-        """The first table of a name in a list; an empty one where there is none."""
+        """The first table of a name in a list; empty if there is none."""
         _, table = self.named(key).get(name, (0, {})) if isinstance(name, str) else (0, {})
         return table
 
 
 def faults_of_range(value: Any, path: Path = ()) -> Iterator[Fault]:
-    """Numbers, anywhere in a value, that cannot be reckoned with.
+    """Faults of numbers, anywhere in a value, that cannot be computed with.
 
-    Whole numbers that no number of double precision comes near, and lengths whose powers overflow. Infinity and NaN
-    are left to the types.
+    These are integers beyond the range of double precision, and lengths with powers that overflow. The types refuse
+    infinity and NaN.
     """
     if isinstance(value, PLAIN):
-        # No key of a path makes a fault of these.
+        # These values have no fault under any key.
         if isinstance(value, str) or not value or SMALLEST_SIZE <= abs(value) <= LARGEST_LENGTH:
             return
         if isinstance(value, int) and abs(value) > sys.float_info.max:
@@ -136,7 +136,7 @@ def faults_of_range(value: Any, path: Path = ()) -> Iterator[Fault]:
 
 
 def _length_faults(value: float, path: Path) -> Iterator[Fault]:
-    """A length that is too large or too small to compute with; the last key of its path says whether it is one."""
+    """Fault of a length that is too large or too small to compute with; the last key of its path tells lengths."""
     keys = [part for part in path if isinstance(part, str)]
     if keys[-1] in PROFILE_KEYS:
         keys.pop()
@@ -148,7 +148,7 @@ def _length_faults(value: float, path: Path) -> Iterator[Fault]:
 
 
 def shown(value: object) -> str:
-    """A value of the file as it is quoted in a message: short, in the words of TOML."""
+    """A value of the file for a message: short, as TOML."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):
@@ -171,7 +171,7 @@ def printable(text: str) -> str:
 
 
 def shortened(text: str) -> str:
-    """A text, cut off where it is too long for a message."""
+    """A text, cut off if it is too long for a message."""
     return text if len(text) <= LONGEST_TEXT else text[: LONGEST_TEXT - 3] + "..."
 
 
@@ -186,7 +186,7 @@ def listing(names: Iterable[str], what: str) -> str:
 
 
 def below(path: Path, faults: Iterable[Fault]) -> Iterator[Fault]:
-    """Faults whose paths are counted from where ``path`` starts."""
+    """Faults with paths that begin with ``path``."""
     return (fault._replace(path=(*path, *fault.path)) for fault in faults)
 
 
@@ -200,8 +200,8 @@ def not_ascending(numbers: Sequence[float], path: Path, what: str) -> Iterator[F
 
     Args:
         numbers: the numbers.
-        path: of their list.
-        what: one of them in words.
+        path: path of their list.
+        what: word for one of them.
     """
     for i, (before, number) in enumerate(itertools.pairwise(numbers), 1):
         if not number > before:
@@ -216,7 +216,7 @@ def frame_faults(given: Table) -> Iterator[Fault]:
 
 
 def one_of(first: str, second: str, given: Table, remedy: str = "") -> Iterator[Fault]:
-    """Faults unless exactly one of two keys is there; with a remedy for a table without either."""
+    """Faults unless a table has exactly one of two keys; ``remedy`` is for a table without either."""
     if first in given and second in given:
         yield Fault((second,), f"stands beside {first}", "give one of the two")
     if first not in given and second not in given:
@@ -224,7 +224,7 @@ def one_of(first: str, second: str, given: Table, remedy: str = "") -> Iterator[
 
 
 def faults_of_ends(given: Table, *, equal: bool) -> Iterator[Fault]:
-    """Faults of a lower and an upper end, each one number for all entries or a list, which are left out or faulty too.
+    """Faults of a lower and an upper end, one number for all entries or a list; both may be missing or faulty.
 
     Args:
         given: the table.
@@ -235,7 +235,7 @@ def faults_of_ends(given: Table, *, equal: bool) -> Iterator[Fault]:
     if min(len(lower), len(upper)) > 1 and len(lower) != len(upper):
         yield Fault(("upper",), f"must have as many entries as lower, {len(lower)}, got {len(upper)}")
         return
-    # A side that is left out or faulty has no numbers, and nothing to cross.
+    # A missing or faulty end has no numbers to compare.
     lowest, highest = (side * count if len(side) == 1 else side for side in (lower, upper))
     pairs = list(zip(lowest, highest, strict=False))
     if any(low > high or (low == high and not equal) for low, high in pairs):
@@ -243,17 +243,17 @@ def faults_of_ends(given: Table, *, equal: bool) -> Iterator[Fault]:
 
 
 def table_of(value: Any) -> Table:
-    """The table that a value is; an empty one where it is faulty or left out."""
+    """The value if it is a table; else an empty table."""
     return value if isinstance(value, Mapping) else {}
 
 
 def list_of(value: Any) -> Sequence[Any]:
-    """The list that a value is; an empty one where it is faulty or left out."""
+    """The value if it is a list; else an empty list."""
     return value if isinstance(value, list | tuple) else ()
 
 
 def numbers_of(value: Any) -> list[float]:
-    """The numbers of a value that is a number or a list of numbers; none where it is faulty or left out."""
+    """The numbers of a value that is a number or a list of numbers; empty for other values."""
     numbers = list(value) if isinstance(value, list | tuple) else [value]
     # Truth values are integers in Python.
     for number in numbers:

@@ -53,13 +53,13 @@ _UNIT = re.compile(rf", ({'|'.join(map(re.escape, UNITS))})(?=[;,]|$)")
 
 
 def unit_of(field: FieldInfo) -> str:
-    """The unit that the description of a field gives, "1" without unit, "–" where it gives none."""
+    """The unit in the description of a field, "1" for a dimensionless one, "–" if it names none."""
     unit, _ = unit_and_meaning(field.description or "")
     return unit
 
 
 def unit_and_meaning(description: str) -> tuple[str, str]:
-    """The unit that a description gives, "–" where there is none, and the description without it."""
+    """The unit in a description, "–" if there is none, and the rest of the description."""
     match = _UNIT.search(description)
     if match is None:
         return "–", description
@@ -70,13 +70,13 @@ def unit_and_meaning(description: str) -> tuple[str, str]:
 
 
 def varying_mark(field: FieldInfo) -> Varying | None:
-    """The mark of a field that may vary along X, or whose components may."""
+    """The mark of a field that may vary along X, or with components that may."""
     marks = (entry for annotation in _annotations(field) for entry in _metadata(annotation))
     return next((mark for mark in marks if isinstance(mark, Varying)), None)
 
 
 def varies_by_component(field: FieldInfo) -> bool:
-    """Whether it is the components of a field that vary: the mark stands inside a list."""
+    """Whether the components of a field vary: the mark is inside a list."""
     for annotation in _annotations(field):
         if any(isinstance(entry, Varying) for entry in _metadata(annotation)):
             return False
@@ -86,7 +86,7 @@ def varies_by_component(field: FieldInfo) -> bool:
 
 
 def _annotations(field: FieldInfo) -> Iterator[Any]:
-    """The annotation of a field and all that it is made of, from outside to inside."""
+    """The annotation of a field and its parts, from outside to inside."""
     pending: list[Any] = [Annotated[(field.annotation, *field.metadata, None)]]
     while pending:
         annotation = pending.pop(0)

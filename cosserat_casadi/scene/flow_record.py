@@ -1,4 +1,4 @@
-"""A fluid that rods stand or move in: drag of its stream, buoyancy, and the mass that moves along."""
+"""A fluid around rods: drag of its stream, buoyancy, and added mass."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ gravity = [0, 0, -9.81]     # the finger floats by the weight of the water that 
     rods: Names | None = Field(None, description="names of the rods in the fluid; all rods when left out")
 
     def has_kinks_on(self, rod: str) -> bool:
-        """Drag has one where the rod lies along the stream."""
+        """Whether drag may have a kink on this rod: it has one where the rod is along the stream."""
         return self.acts_on_rod(rod)
 
     def acts_on_rod(self, rod: str) -> bool:
@@ -69,7 +69,7 @@ gravity = [0, 0, -9.81]     # the finger floats by the weight of the water that 
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
-        """A rod in the fluid has no diameter."""
+        """Faults of rods in the fluid without a diameter."""
         if "diameter" in given:
             return
         named = given.get("rods")
@@ -77,7 +77,7 @@ gravity = [0, 0, -9.81]     # the finger floats by the weight of the water that 
             if isinstance(named, list) and rod.get("name") not in named:
                 continue
             section = rod.get("section")
-            # A section with faults of its own may have a diameter.
+            # A faulty section may have a diameter.
             without_shape = isinstance(section, Mapping) and "shape" not in section
             if not without_shape and not is_round(section):
                 problem = f"missing: rod {shown(rod.get('name'))} has no round section"

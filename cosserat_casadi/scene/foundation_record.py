@@ -1,4 +1,4 @@
-"""Elastic foundations: springs all along a rod, as of the tissue round a needle."""
+"""Elastic foundations: springs all along a rod, such as the tissue around a needle."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ span = [0.4, 1.0]
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """Springs without stiffness are none."""
+        """The stiffnesses of a foundation are not all zero."""
         stiffness = given.get("stiffness")
         if isinstance(stiffness, list | tuple) and stiffness and all(value == 0 for value in stiffness):
             yield Fault(("stiffness",), "must not be zero", "springs that hold nothing: leave the load out")

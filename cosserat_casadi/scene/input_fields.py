@@ -16,21 +16,21 @@ class InputField:
     """A field of a scene's table that may stay free at run time.
 
     Attributes:
-        unit: SI unit of each number, "1" where there is none.
+        unit: SI unit of each number, "1" for a dimensionless one.
         components: 1 for a number, 3 for a vector, 4 for a quaternion.
         polynomial: whether each component may be a list of Legendre coefficients along the rod.
         positive: whether each number must be > 0.
         nonzero: whether not all numbers may be zero.
         lower: least value that physics allows each number; None without a bound.
         upper: largest value that physics allows each number, whatever its table says; None without a bound.
-        axes: axes of the components: "none" of a number, "world", "section", or "frame" for the axes that the
-            record's own ``frame`` names.
+        axes: axes of the components: "none" for a number, "world", "section", or "frame" for the axes that the record's
+            key ``frame`` names.
         geometry: whether it moves rods or their bases, so that the equations are not linear in it; its path in a motion
             must have a velocity.
         continuous: whether its path in a motion must not jump: it prescribes a length.
-        on_request: whether it stays free only where the scene lists it: it is no magnitude.
+        on_request: whether it stays free only if the scene lists it, since it is not a magnitude.
         nonlinear: whether the equations are not linear in it.
-        nodal: whether it holds numbers of each node of a rod.
+        nodal: whether it has values at each node of a rod.
     """
 
     unit: str
@@ -53,7 +53,7 @@ class InputField:
         return self.geometry or self.continuous
 
     def entry_count(self, value: Any) -> int:
-        """Count the numbers of the input where its table has this value; faulty values have no coefficients."""
+        """Number of entries of the input for this value in its table; faulty values have no coefficients."""
         if not self.polynomial:
             return self.components
         if self.components == 1:

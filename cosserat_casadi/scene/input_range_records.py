@@ -1,4 +1,4 @@
-"""Where free inputs and parameters will go: the table of ranges that a discretisation is chosen for."""
+"""Ranges of free inputs and parameters, for which a discretisation is chosen."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ InputRanges = Annotated[dict[str, Pairs], AfterValidator(HashedTable)]
 
 
 def ranges_of_no_input(scene: SceneTables) -> Iterator[Fault]:
-    """Faults of ranges of names that are neither free nor parameters, or whose pairs are not as many as entries."""
+    """Faults of ranges of names that are neither free nor parameters, or with another number of pairs than entries."""
     ranges = table_of(scene.get("ranges"))
     if not ranges:
         return
     counts = entry_counts(scene)
-    # Of names that are tied together the first is the parameter's.
+    # The first one of names that are tied together is the parameter's.
     listed = list_of(scene.get("parameters"))
     names = [*counts, *(entry[0] if isinstance(entry, list) and entry else entry for entry in listed)]
     for name, pairs in ranges.items():

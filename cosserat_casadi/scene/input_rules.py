@@ -1,4 +1,4 @@
-"""The rules of inputs: names that a scene lists exist and can be free, names that it bounds are free."""
+"""Rules of inputs: listed names exist and can be free, bounded names are free."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from cosserat_casadi.scene.rod_records import Rod
 from cosserat_casadi.scene.tube_records import Tube
 
 Owners = dict[str, tuple[type[Entry] | None, Table]]
-"""Tables that may have inputs, by name, with the record of each; None where its kind is not known."""
+"""Tables that may have inputs, by name, with the record of each; None for an unknown kind."""
 
 
 def inputs_that_are_not(scene: SceneTables) -> Iterator[Fault]:
-    """An input names nothing in the scene, or what cannot be free."""
+    """Faults of inputs that name nothing in the scene, or something that cannot be free."""
     owners = owners_of(scene)
     for i, entry in enumerate(list_of(scene.get("inputs"))):
         if not isinstance(entry, str):
@@ -43,7 +43,7 @@ def bounds_of_no_input(scene: SceneTables) -> Iterator[Fault]:
         name = bound.get("input")
         if not isinstance(name, str):
             continue
-        # What is no input has no count that the bound could differ from.
+        # A name that is not an input has no number of entries to compare with the bound's.
         path = ("bounds", i, "input")
         if name not in counts:
             problem = f"{shown(name)} is not free at run time"
@@ -63,7 +63,7 @@ def _numbers(count: int) -> str:
 
 
 def owners_of(scene: SceneTables) -> Owners:
-    """Owners of inputs by name, with their records where the kind is known."""
+    """Owners of inputs by name, with their records, or None for an unknown kind."""
     owners = _causes(scene)
     # Inputs of a load or an actuator hide those of a rod or a tube of the same name.
     for key, record in (("rods", Rod), ("tubes", Tube)):
@@ -73,9 +73,9 @@ def owners_of(scene: SceneTables) -> Owners:
 
 
 def _causes(scene: SceneTables) -> Owners:
-    """Joints, actuators and loads by name, with the record where the kind is known."""
+    """Joints, actuators and loads by name, with their records, or None for an unknown kind."""
     causes: Owners = {}
-    # A load hides an actuator of the same name; that they share it is a fault of its own.
+    # A load hides an actuator of the same name; another rule refuses the shared name.
     for family in (JOINTS, ACTUATORS, LOADS):
         for name, (_, table) in scene.named(family.table).items():
             causes[name] = (family.record_of(table), table)
@@ -83,7 +83,7 @@ def _causes(scene: SceneTables) -> Owners:
 
 
 def field_faults(field: str, record: type[Entry] | None, table: Table, scene: SceneTables) -> Iterator[Fault]:
-    """Why a field of a table cannot stay free at run time, without path; nothing where the kind is not known."""
+    """Faults, without path, of a field that cannot stay free at run time; none for an unknown kind."""
     if record is None:
         return
     fields = record.free_fields(table)
@@ -91,7 +91,7 @@ def field_faults(field: str, record: type[Entry] | None, table: Table, scene: Sc
         yield from record.input_conflicts(field, table, scene)
         return
     name = shown(table["name"])
-    # What is free of a load or an actuator are its magnitudes; of a rod it is its geometry.
+    # A load or an actuator has free magnitudes, a rod free geometry.
     if record is Rod:
         problem = f"{name} has no {shown(field)} to leave free"
         yield Fault((), problem, listing(fields, "fields"))
@@ -101,10 +101,10 @@ def field_faults(field: str, record: type[Entry] | None, table: Table, scene: Sc
 
 
 def input_field_of(name: str, owners: Owners) -> tuple[str, str] | None:
-    """The input that a name is of, as (owner, field), where the name may go on with a part such as ``.z``.
+    """The input that a name begins with, as (owner, field); the name may go on with a part such as ``.z``.
 
     Returns:
-        None where no load, actuator or rod has such a field; the longest field where there are several.
+        None if no load, actuator or rod has such a field; the longest field if there are several.
     """
     owner, _, rest = name.partition(".")
     record, table = owners.get(owner, (None, {}))
@@ -117,7 +117,7 @@ def input_field_of(name: str, owners: Owners) -> tuple[str, str] | None:
 
 
 def input_part_faults(name: str, scene: SceneTables) -> Iterator[Fault]:
-    """Why a name is no input, and no part of one, without path; which parts there are is the model's to say."""
+    """Faults, without path, of a name that is not an input or a part of one; the model knows which parts exist."""
     owners = owners_of(scene)
     owner, _, rest = name.partition(".")
     if not rest:
@@ -132,13 +132,13 @@ def input_part_faults(name: str, scene: SceneTables) -> Iterator[Fault]:
 
 
 def entry_counts(scene: SceneTables) -> dict[str, int | None]:
-    """Numbers of entries of what the tables leave free at run time, by name; None of inputs that are faulty."""
+    """Numbers of entries of the free inputs by name; None for faulty inputs."""
     owners = owners_of(scene)
     return {name: _entry_count(name, owners) for name in free_names(scene)}
 
 
 def free_names(scene: SceneTables) -> list[str]:
-    """Names of inputs that are free at run time: the listed names, or else every magnitude."""
+    """Names of the free inputs: the listed names, or else every magnitude."""
     entries = scene.get("inputs")
     if isinstance(entries, list):
         return [name for name in entries if isinstance(name, str)]
@@ -146,7 +146,7 @@ def free_names(scene: SceneTables) -> list[str]:
 
 
 def requested_fields(scene: SceneTables) -> dict[str, str]:
-    """Further inputs of an identification: set by columns, or unknown, each with the table that asks for it."""
+    """Further inputs of an identification, set by columns or unknown, with the table that asks for each."""
     owners = owners_of(scene)
     requests: dict[str, str] = {}
     asked: list[tuple[Any, str]] = []
@@ -168,7 +168,7 @@ def requested_fields(scene: SceneTables) -> dict[str, str]:
 
 
 def _magnitudes(scene: SceneTables) -> list[str]:
-    """Names of the free inputs where the scene lists none: all of tubes, and magnitudes of actuators and loads."""
+    """Names of the free inputs of a scene that lists none: all inputs of tubes, magnitudes of actuators and loads."""
     of_tubes = [f"{name}.{field}" for name in scene.named("tubes") for field in Tube.inputs]
     return of_tubes + [
         f"{name}.{field}"

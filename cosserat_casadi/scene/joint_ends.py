@@ -1,4 +1,4 @@
-"""Joints written by their two ends, ``between``: put as joints at a body, in the world or at a base."""
+"""Joints that are written by their two ends, ``between``: converted to joints at a body, in the world or at a base."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from cosserat_casadi.scene.faults import Fault, SceneTables, Table
 from cosserat_casadi.scene.orientations import ORIENTATION_KEYS
 
 PLACE = ("position", *ORIENTATION_KEYS)
-"""Keys of an end in a body or in the world that say where the joint is."""
+"""Keys of an end in a body or in the world that give the place of the joint."""
 
 ORIGIN = {"position": [0.0, 0.0, 0.0]}
-"""Place of an end in a body or in the world that does not say it."""
+"""Default place of an end in a body or in the world."""
 
 KEYS = {"rod", "at", "body", "world", *PLACE}
-"""Keys of an end: one with another is left for its record to refuse."""
+"""Keys of an end; its record refuses an end with another key."""
 
 Tables = dict[str, Any]
 
 
 def place_joints_by_their_ends(tables: Tables) -> None:
-    """Write joints that name two ends as joints of one section, or as joints that carry a body.
+    """Convert joints with two ends to joints of one section, or to joints that carry a body.
 
-    The base of a rod at a section of another rod, or in the world, is placed there. Between two sections that are no
-    bases stands a body without mass, fixed to the first. What cannot be read so is left for the records to refuse.
+    A base of a rod at a section of another rod, or in the world, is placed there. Two sections that are not bases get a
+    body without mass between them, fixed to the first. The records refuse joints that cannot be converted.
     """
     given = SceneTables(tables)
     joints: list[tuple[int, Any]] = list(given.tables("joints"))
@@ -45,7 +45,7 @@ def place_joints_by_their_ends(tables: Tables) -> None:
 
 
 def end_faults(ends: Any) -> Iterator[Fault]:
-    """Why two ends make no joint, without path; nothing where they are no two tables, which is another fault."""
+    """Faults, without path, of two ends that do not make a joint; none if they are not two tables, another fault."""
     if not _are_two_tables(ends):
         return
     rods = [end for end in ends if "rod" in end]
@@ -72,7 +72,7 @@ def _at(end: Table) -> Any:
 
 
 def _at_place(tables: Tables, joint: Tables, section: Table, other: Table) -> bool:
-    """A section of a rod at a body or in the world."""
+    """Convert a joint of a rod's section at a body or in the world."""
     joint["rod"] = section["rod"]
     joint["at"] = _at(section)
     place = {key: other[key] for key in PLACE if key in other}
@@ -85,7 +85,7 @@ def _at_place(tables: Tables, joint: Tables, section: Table, other: Table) -> bo
 
 
 def _between_bodies(joint: Tables, ends: list[Table]) -> bool:
-    """A body at another body, or in the world, which carries it."""
+    """Convert a joint of a body at another body, or in the world, which carries it."""
     first, second = ends if "world" not in ends[1] else ends[::-1]
     if "body" in first:
         joint["body"] = first["body"]
@@ -95,7 +95,7 @@ def _between_bodies(joint: Tables, ends: list[Table]) -> bool:
 
 
 def _between_rods(tables: Tables, joint: Tables, sections: list[Table], index: int) -> bool:
-    """Tie a section of a rod to a section of another: put the base of one there, or let a body hold both."""
+    """Convert a joint of two rods: put the base of one at the section of the other, or let a body hold both."""
     first, second = sections if _at(sections[0]) != 0 else sections[::-1]
     joint["rod"] = second["rod"]
     joint["at"] = _at(second)
@@ -117,7 +117,7 @@ def add_unlisted_body(tables: Tables, name: Any, **contents: Any) -> Any:
 
 
 def _put_base(tables: Tables, name: Any, place: Tables) -> bool:
-    """Put the base of a rod at a place; whether there is such a rod."""
+    """Put the base of a rod at a place; return whether there is such a rod."""
     if not isinstance(name, str) or name not in SceneTables(tables).named("rods"):
         return False
     rod: Any = SceneTables(tables).named("rods")[name][1]

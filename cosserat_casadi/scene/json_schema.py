@@ -13,7 +13,7 @@ from cosserat_casadi.scene.scene import Scene
 from cosserat_casadi.scene.values import TABLE_TITLES
 
 COMMITTED = Path(__file__).with_name("scene.schema.json")
-"""The copy that editors are pointed at."""
+"""Path of the committed copy, which editors use."""
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
@@ -28,11 +28,11 @@ def scene_json_schema() -> dict[str, Any]:
 
 
 def _with_references(node: Any, tables: dict[str, Any]) -> Any:
-    """A part of the schema that refers to the tables of what varies, which stand in it once for each key.
+    """A part of the schema with references in place of the tables of varying values, which it repeats for each key.
 
     Args:
         node: the part.
-        tables: receives their schemas by title.
+        tables: receives the schemas of these tables by title.
     """
     if isinstance(node, list):
         return [_with_references(entry, tables) for entry in node]
@@ -45,7 +45,7 @@ def _with_references(node: Any, tables: dict[str, Any]) -> Any:
 
 
 def schema_text() -> str:
-    """The schema as it is committed: keys sorted, two spaces, a newline at the end."""
+    """The text of the committed schema: keys sorted, two spaces, a newline at the end."""
     schema = scene_json_schema()
     text = json.dumps(schema, indent=2, sort_keys=True, ensure_ascii=False)
     return f"{text}\n"

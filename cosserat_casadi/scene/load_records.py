@@ -1,6 +1,6 @@
 """Loads: gravity, and wrenches on sections, along rods and on bodies.
 
-A kind is a record here, or beside, and a class in `loads/`; load_kinds.py lists the kinds that ship.
+A kind is a record in this folder and a class in `loads/`; load_kinds.py lists the kinds that ship.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ class LoadRecord(Entry):
         kind: str  # each member declares its own word, where it stands among its keys
 
     def has_kinks_on(self, rod: str) -> bool:
-        """Whether the load on the rod of this name may have a kink in its slope anywhere along it."""
+        """Whether the load on the rod of this name may have a kink along it."""
         return False
 
 
@@ -71,15 +71,15 @@ acceleration = [0, 0, -9.81]
 
     @property
     def acts_on_all(self) -> bool:
-        """Whether gravity weighs every rod and every body."""
+        """Whether gravity acts on every rod and every body."""
         return self.rods is None and self.bodies is None
 
     def acts_on_rod(self, rod: str) -> bool:
-        """Whether gravity weighs the rod of this name."""
+        """Whether gravity acts on the rod of this name."""
         return self.acts_on_all if self.rods is None else rod in self.rods
 
     def acts_on_body(self, body: str) -> bool:
-        """Whether gravity weighs the body of this name."""
+        """Whether gravity acts on the body of this name."""
         return self.acts_on_all if self.bodies is None else body in self.bodies
 
 

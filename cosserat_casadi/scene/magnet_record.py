@@ -14,10 +14,10 @@ from cosserat_casadi.scene.records import Record
 from cosserat_casadi.scene.values import ABOVE_BASE, Matrix3, Number, Polynomials, Vector, above_base
 
 STRONGEST_FIELD = 100.0
-"""Largest component of a field, T: no magnet that lasts has more, and 20 mT written as 20 has."""
+"""Largest component of a field, T: above permanent magnets, below 20 mT written as 20."""
 
 FIELDS = ("field", "gradient", "dipole")
-"""Keys that make a field."""
+"""Keys that give a field."""
 
 
 class Dipole(Record):
@@ -92,7 +92,7 @@ field = [0, 0.02, 0]
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """A magnet is in one place, has one moment, and stands in a field."""
+        """A magnet is in one place, has one moment, and is in a field."""
         yield from one_of("rod", "body", given)
         yield from one_of("magnetisation", "moment", given)
         if "body" in given and "magnetisation" in given:
@@ -111,7 +111,7 @@ field = [0, 0.02, 0]
 
     @classmethod
     def free_fields(cls, given: Table) -> tuple[str, ...]:
-        """The field; its gradient, the moment and the source where the table has them."""
+        """Fields that may be free: the field, and gradient, moment and source if the table has them."""
         fields = ["field", *(key for key in ("gradient", "moment") if key in given)]
         if "dipole" in given:
             fields += ["dipole.position", "dipole.moment"]
@@ -126,7 +126,7 @@ def _zero(key: str, given: Table, remedy: str) -> Iterator[Fault]:
 
 
 def _is_not_zero(component: Any) -> bool:
-    """Whether a component has a number that is not zero; a faulty component has a fault elsewhere."""
+    """Whether a component has a number that is not zero; faulty components have their own fault."""
     if isinstance(component, Mapping):
         return any(_is_not_zero(entry) for entry in component.values())
     if isinstance(component, list | tuple):
@@ -135,7 +135,7 @@ def _is_not_zero(component: Any) -> bool:
 
 
 def _too_strong(given: Table) -> Iterator[Fault]:
-    """The field is given in another unit than tesla."""
+    """Faults of a field that is probably given in another unit than tesla."""
     for i, component in enumerate(list_of(given.get("field"))):
         if isinstance(component, int | float) and abs(component) > STRONGEST_FIELD:
             problem = f"must be at most {STRONGEST_FIELD:g} T, got {component:g}"

@@ -20,7 +20,7 @@ INCOMPRESSIBLE = 0.5
 """Poisson's ratio of a material that keeps its volume."""
 
 MODULUS_SLACK = 0.01
-"""Share by which the modulus of coefficients, which are rounded in print, may differ from Young's modulus."""
+"""Share by which the modulus of coefficients, which are often rounded, may differ from Young's modulus."""
 
 
 class Material(Record):
@@ -38,7 +38,7 @@ material = { youngs_modulus = 2.0e9, poisson_ratio = 0.4, density = 1100.0 }
     density: Positive | None = Field(None, description="density, kg/m³; needed where gravity acts")
 
     def in_proportion(self) -> Self:
-        """The material whose coefficients have its Young's modulus, where they are the shape of a law."""
+        """The material with coefficients scaled to its Young's modulus, for a law whose shape they give."""
         return self
 
     @classmethod
@@ -66,7 +66,7 @@ Curve = Annotated[tuple[Point, ...], NotEmpty()]
 
 
 class StressTable(Record):
-    """Measured stress of a section against strain, by strain; both zero in the unloaded rod."""
+    """Measured curves of a section, stress against strain, by strain; both are zero in the unloaded rod."""
 
     example: ClassVar[str] = """\
 material.law = "table"
@@ -130,7 +130,7 @@ def _curve_faults(name: str, curve: Any) -> Iterator[Fault]:
 
 @MATERIALS.register
 class TabulatedMaterial(Material):
-    """A material whose sections were measured: curves between whose points stress rises smoothly.
+    """A material with measured sections: stress rises smoothly between the points of a curve.
 
     A curve without negative strains holds for both signs. Strains without a curve are linear. Beyond its ends a curve
     goes on straight, and results there are reported.
@@ -147,7 +147,7 @@ material.table = { bending_y = [[0, 0], [5, 0.12], [10, 0.2]] }
     table: StressTable = Field(description="stress against strain, by strain")
 
     def parameter_refusal(self, key: str) -> tuple[str, str] | None:
-        """Refuse a measured curve as a parameter: no single number of it could vary."""
+        """Refuse a measured curve as a parameter, since no single number of it could vary."""
         if key == "table":
             return "is a measured curve", "a curve that depends on few numbers is law = 'polynomial'"
         return super().parameter_refusal(key)
@@ -179,7 +179,7 @@ material.terms = [{ bending_y = 4, coefficient = 1.0e-6 }]
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """The stress of a term vanishes in the unloaded rod: its powers add up to two at least."""
+        """The stress of a term is zero in the unloaded rod: its powers add up to at least two."""
         powers = [value for key, value in given.items() if key != "coefficient"]
         if all(isinstance(power, int) for power in powers) and sum(powers) < 2:
             problem = "must have powers that add up to at least 2"
@@ -188,7 +188,7 @@ material.terms = [{ bending_y = 4, coefficient = 1.0e-6 }]
 
 @MATERIALS.register
 class PolynomialMaterial(Material):
-    """A material whose sections store polynomials of their strains beside the energy of linear elasticity."""
+    """A material whose sections store polynomials of their strains in addition to the linear elastic energy."""
 
     example: ClassVar[str] = """\
 material.law = "polynomial"
@@ -205,7 +205,7 @@ material.terms = [{ bending_y = 4, coefficient = 1.0e-6 }, { torsion = 1, extens
 
 
 class IncompressibleMaterial(Material):
-    """A material of rubber elasticity that keeps its volume: fibres stretch by its uniaxial law.
+    """An incompressible material of rubber elasticity: fibres stretch by its uniaxial law.
 
     Attributes:
         moduli: keys of the coefficients in Pa, which Young's modulus scales.
@@ -215,7 +215,7 @@ class IncompressibleMaterial(Material):
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """The shear modulus is E/3 where no other modulus stands; the coefficients have Young's modulus."""
+        """The shear modulus is E/3 by default; the coefficients agree with Young's modulus."""
         if "poisson_ratio" in given and "shear_modulus" in given:
             yield Fault(("shear_modulus",), "stands beside poisson_ratio", "give one of the two, or none")
         modulus = numbers_of(given.get("youngs_modulus"))
@@ -228,11 +228,11 @@ class IncompressibleMaterial(Material):
 
     @classmethod
     def small_strain_modulus(cls, given: Table) -> float | None:
-        """Young's modulus that the coefficients of a table have, Pa; None where they are faulty, or there are none."""
+        """Young's modulus of the coefficients of a table, Pa; None for faulty or missing coefficients."""
         return None
 
     def in_proportion(self) -> Self:
-        """The material with its coefficients scaled to its Young's modulus; as it is where they make no modulus."""
+        """The material with its coefficients scaled to its Young's modulus; unchanged if they have no modulus."""
         given = self.model_dump(exclude_unset=True)
         small = self.small_strain_modulus(given)
         if small is None or not small > 0.0:
@@ -242,7 +242,7 @@ class IncompressibleMaterial(Material):
 
 
 def _scaled(modulus: Any, scale: float) -> Any:
-    """A coefficient times a scale; of pairs, their first numbers."""
+    """A coefficient times a scale; pairs have their first numbers scaled."""
     if isinstance(modulus, tuple):
         return tuple((first * scale, exponent) for first, exponent in modulus)
     return modulus * scale
@@ -350,7 +350,7 @@ material = { law = "ogden", youngs_modulus = 1.2e6, ogden = [[0.4e6, 2.0]] }
 class Superelastic(Material):
     """A superelastic wire: moment against curvature in three straight pieces with rounded corners.
 
-    It applies to bending of round sections, in whatever direction; other strains are linear. The record gives strains
+    It applies to bending of round sections in every direction; other strains are linear. The record gives strains
     of the outermost fibre. One branch is computed at a time: there is no hysteresis.
     """
 
@@ -399,4 +399,4 @@ ElasticMaterial = Annotated[
     LinearMaterial | TabulatedMaterial | PolynomialMaterial | NeoHookean | MooneyRivlin | Yeoh | Ogden | Superelastic,
     MATERIALS,
 ]
-"""A material of a rod, of whatever law."""
+"""A material of a rod with any law."""

@@ -1,7 +1,7 @@
 """Common part of the tables of measurements: a file, its columns, and the conditions of each row.
 
-They do not act on the rods: a scene with measurements is solved like one without. A measured quantity is one record in
-scene/measurements.py, and one class in identification/measured_quantities.py that says how far the model is from it.
+They do not act on the rods: a scene with measurements is solved like a scene without them. A measured quantity is one
+record in scene/measurements.py, and one class in identification/measured_quantities.py with its misfit.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from cosserat_casadi.spelling import counted
 
 
 class InputColumn(Record):
-    """Where the values of an input, or the times, are: in a column, scaled and shifted, or one number for all rows."""
+    """Source of the values of an input, or of the times: a column, scaled and shifted, or one number for all rows."""
 
     example: ClassVar[str] = """\
 [[measurements]]
@@ -39,7 +39,7 @@ sigma = 1e-3
 
 
 def _as_input_column(value: Any) -> Any:
-    """A text as the table of a column, a number as the table of a constant."""
+    """Convert a text to the table of a column, a number to the table of a constant."""
     if isinstance(value, str):
         return {"column": value}
     if isinstance(value, int | float) and not isinstance(value, bool):
@@ -52,7 +52,7 @@ MeasuredInput = Annotated[InputColumn, BeforeValidator(_as_input_column)]
 TEXT = Tag("⟨text⟩")
 NUMBER = Tag("⟨number⟩")
 BY_TYPE = Discriminator(lambda value: TEXT.tag if isinstance(value, str) else NUMBER.tag)
-"""Takes the choice marked `TEXT` for a text, the one marked `NUMBER` for anything else."""
+"""Discriminator: the choice marked `TEXT` for a text, the one marked `NUMBER` for anything else."""
 
 Abscissa = Annotated[Annotated[str, TEXT] | Annotated[Share, NUMBER], BY_TYPE]
 """An abscissa X, or the column that has it."""
@@ -65,12 +65,12 @@ Cell = Annotated[Annotated[str, TEXT] | Annotated[Number, NUMBER], BY_TYPE]
 
 
 class MeasurementRecord(Entry):
-    """Columns of a table that hold one measured quantity.
+    """Columns of a table with one measured quantity.
 
     Attributes:
-        entries: what each of the columns holds.
-        differences: units of the differences between model and measurement, in which sigma is.
-        of_sensor: keys whose numbers say where the sensor is: they may be unknown.
+        entries: words for the numbers in the columns.
+        differences: units of the differences between model and measurement, and so of sigma.
+        of_sensor: keys with numbers that place the sensor, which may be unknowns.
     """
 
     entries: ClassVar[tuple[str, ...]] = ()
@@ -81,7 +81,7 @@ class MeasurementRecord(Entry):
         quantity: str  # each member declares its own word, where it stands among its keys
     name: str | None = Field(None, description="what results call it; the file and the quantity when left out")
     file: str = Field(description="CSV file with a header, a row for each measured case, relative to the scene's file")
-    # The class attribute `inputs` says which fields of an entry may stay free: none.
+    # The class attribute `inputs` of an entry names fields that may stay free: here none.
     set_inputs: Annotated[dict[str, MeasuredInput], AfterValidator(HashedTable)] = Field(
         default_factory=HashedTable,
         alias="inputs",
@@ -116,11 +116,11 @@ class MeasurementRecord(Entry):
 
     @property
     def title(self) -> str:
-        """Name in results, where the measurement has no name in the scene."""
+        """Name in results of a measurement without a name in the scene."""
         return self.name or f"{PurePath(self.file).stem} {self.quantity}"
 
     def parameter_refusal(self, key: str) -> tuple[str, str] | None:
-        """Numbers that the table is read with are no parameters."""
+        """Refuse parameters for numbers with which the table is read."""
         if key in self.of_sensor:
             return super().parameter_refusal(key)
         known = " or ".join(self.of_sensor) or "none of its numbers"
@@ -146,7 +146,7 @@ class MeasurementRecord(Entry):
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
-        """Faults of names that columns set and that are no inputs of the scene."""
+        """Faults of columns for names that are not inputs of the scene."""
         for name in table_of(given.get("inputs")):
             if isinstance(name, str):
                 yield from below(("inputs", name), input_part_faults(name, scene))
@@ -157,7 +157,7 @@ MEASUREMENTS: Family[MeasurementRecord] = Family("measurements", key="quantity")
 
 
 class MovingMeasurement(MeasurementRecord):
-    """Something that can be measured over time, in the motion of the scene."""
+    """A quantity that can be measured over time, in the motion of the scene."""
 
     time: MeasuredInput | None = Field(
         None,
@@ -167,7 +167,7 @@ class MovingMeasurement(MeasurementRecord):
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
-        """Faults of measurements over time: they are made in a motion, whose inputs no column sets."""
+        """Measurements over time need a motion, and columns must not set inputs of it."""
         yield from super().scene_conflicts(given, scene)
         if "time" not in given:
             return
@@ -195,7 +195,7 @@ def table_that_moves(name: Any, scene: SceneTables) -> int | None:
 
 
 def overlap(one: str, other: str) -> bool:
-    """Whether one name is the other, or names a part of it.
+    """Whether two names are equal, or one names a part of the other.
 
     ``load.force.x.1`` is no part of ``load.force.x``, which names the constant beside that coefficient.
     """

@@ -19,7 +19,7 @@ from cosserat_casadi.scene.values import Number, Vector
 
 
 class FrameMeasurement(MovingMeasurement):
-    """Something that was measured at a section of a rod, or of a body."""
+    """A quantity measured at a section of a rod, or at a body."""
 
     references: ClassVar[Mapping[str, str]] = {"rod": "rods", "body": "bodies"}
     of_sensor: ClassVar[tuple[str, ...]] = ("at", "offset")
@@ -81,7 +81,7 @@ sigma = [1e-4, 1e-4, 1e-4, 2e-3, 2e-3, 2e-3]
 
 
 class ActuatorMeasurement(MovingMeasurement):
-    """Something that was measured at a tendon."""
+    """A quantity measured at a tendon."""
 
     references: ClassVar[Mapping[str, str]] = {"actuator": "actuators"}
 
@@ -185,7 +185,7 @@ sigma = 2e-6
 
 
 class ModeMeasurement(MeasurementRecord):
-    """Something that was measured of a vibration about the equilibrium."""
+    """A quantity measured in a vibration about the equilibrium."""
 
     mode: MeasuredMode = Field(
         1,

@@ -1,4 +1,4 @@
-"""Faults in the words of the format: pydantic's errors ↦ `Fault` ↦ `Problem`, in the order of the file."""
+"""Error messages: pydantic's errors ↦ `Fault` ↦ `Problem`, in the words of the format and the order of the file."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ WANTED = {
     "model_type": "a table",
     "string_pattern_mismatch": "a letter, then letters, digits and underscores",
 }
-"""Kind of the value that a key wants, by pydantic's type of error."""
+"""Kind of value that a key must have, by pydantic's type of error."""
 
 BOUNDS = {
     "greater_than": (">", "gt"),
@@ -44,9 +44,9 @@ def problems_of(error: ValidationError, tables: Mapping[str, Any], applied: Sequ
     """Word the errors of a scene.
 
     Args:
-        error: what pydantic raised.
+        error: pydantic's exception.
         tables: the scene, in whose order problems are listed.
-        applied: overrides, the last one first: a fault in a value that an override set is told of the override.
+        applied: overrides, the last one first: a fault of a value from an override is reported at the override.
     """
     faults = [_fault(details) for details in error.errors(include_url=False)]
     order = _FileOrder(tables)
@@ -73,7 +73,7 @@ def _fault(details: ErrorDetails) -> Fault:
 
 
 def _path_of(location: Path, kind: str) -> Path:
-    """A location of pydantic without its marks; an unknown key is kept even where it looks like one."""
+    """A location of pydantic without marks; an unknown key that looks like a mark is kept."""
     *leading, last = location
     path = [part for part in leading if not _is_mark(part)]
     if kind == "extra_forbidden" or not _is_mark(last):
@@ -92,10 +92,10 @@ def record_at(location: Path) -> type[Record]:
     record: type[Record] = Scene
     family: Family[Any] | None = None
     for part in location:
-        # An index leads to an entry of the same list.
+        # An index leads to an entry of this list.
         if isinstance(part, int):
             continue
-        # After the key of a family, and an index where it is a list, comes the mark of the kind.
+        # The mark of the kind follows the key of a family, or the index in its list.
         if family is not None:
             record = family.records.get(part.strip("⟨⟩"), record)
             family = None
@@ -126,8 +126,8 @@ def _problem_text(kind: str, details: ErrorDetails) -> str:
 
 
 def _remedy(kind: str, path: Path, record: type[Record], details: ErrorDetails) -> str:
-    """The closest word, or what the field is, where the problem alone does not say it."""
-    # A number out of its range has its range in the problem.
+    """The closest word, or the description of the field, if the problem alone does not imply it."""
+    # The problem of a number out of its range names the range.
     if kind in BOUNDS or kind == "finite_number":
         return ""
     word = details["input"]
@@ -140,7 +140,7 @@ def _remedy(kind: str, path: Path, record: type[Record], details: ErrorDetails) 
 
 
 def _description(path: Path, record: type[Record]) -> str:
-    """Description of a key in the schema; empty where the record does not have the key."""
+    """Description of a key in the schema; empty if the record does not have the key."""
     keys = keys_of(record)
     names = [part for part in path if isinstance(part, str)]
     if not names or names[-1] not in keys:
@@ -152,7 +152,7 @@ def _description(path: Path, record: type[Record]) -> str:
 
 
 class _FileOrder:
-    """Where faults stand in a file."""
+    """Positions of faults in a file."""
 
     def __init__(self, tables: Mapping[str, Any]) -> None:
         self.tables = tables
@@ -172,7 +172,7 @@ class _FileOrder:
                 indices.append(part)
                 container = container[part]
             else:
-                # A fault below what is no table or list: they are in the order of the entries that it could have.
+                # Faults below a value that is not a table or list are in the order of the entries that it could have.
                 index = part if isinstance(part, int) else 0
                 indices.append(index)
                 container = None
@@ -188,9 +188,9 @@ class _FileOrder:
 
 
 def problem_of(fault: Fault, applied: Sequence[Assignment]) -> Problem:
-    """A fault as it is shown; one that an override brought in is shown at the override."""
+    """A fault as a problem; a fault from an override is reported at the override."""
     where = _dotted(fault.path).removeprefix(".")
-    # The last override of a key counts: it stands first.
+    # The last override of a key, which is first in the list, counts.
     for assignment in applied:
         depth = len(assignment.created)
         if fault.path[:depth] == assignment.created:
@@ -201,7 +201,7 @@ def problem_of(fault: Fault, applied: Sequence[Assignment]) -> Problem:
 
 
 def _dotted(path: Path) -> str:
-    """A path as it follows another in a key: ``[0].length``."""
+    """A path in the form in which it follows another path in a key: ``[0].length``."""
     text = ""
     for part in path:
         if isinstance(part, int):

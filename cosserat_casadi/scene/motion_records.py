@@ -22,7 +22,7 @@ from cosserat_casadi.scene.records import Entry
 from cosserat_casadi.scene.values import Component, LegendreComponent, NotEmpty, Number, Positive
 
 SLOPE_SLACK = 1e-9
-"""Change of slope relative to the steepest one that is put down to rounding."""
+"""Change of slope, relative to the steepest one, that may be rounding."""
 
 MOST_DEGREES = 80
 """Legendre coefficients beyond which a travelling wave is refused as too short."""
@@ -46,8 +46,8 @@ TIME_COLUMN = "t"
 class InputMotion(Entry):
     """An input over time: a table of values, or a wave about the scene's value.
 
-    Several of one input add up: the sum of its tables stands for the scene's value, and waves are added to that. A file
-    is read together with the scene: the record holds its rows as times and values.
+    Several motions of one input add up: the sum of its tables replaces the scene's value, and waves are added to that.
+    A file is read with the scene: the record has its rows as times and values.
     """
 
     example: ClassVar[str] = """\
@@ -111,26 +111,26 @@ wave = "one_minus_cosine"
 
     @property
     def knots(self) -> FloatArray:
-        """Times of the table, ascending, shape (k,), s; none of a wave."""
+        """Times of the table, ascending, shape (k,), s; empty for a wave."""
         return np.asarray(self.times or (), dtype=float)
 
     @property
     def knot_values(self) -> FloatArray:
         """Values of the table in the unit of the input, a row for each time, shape (k, entries)."""
-        # A single number may stand in a list or without.
+        # A single number may be in a list or not.
         rows = [np.atleast_1d(np.asarray(value, dtype=float)) for value in self.values or ()]
         return np.stack(rows) if rows else np.zeros((0, 0))
 
     @property
     def amplitudes(self) -> FloatArray:
-        """Amplitude of the wave in the unit of the input, shape (entries,); none of a table."""
+        """Amplitude of the wave in the unit of the input, shape (entries,); empty for a table."""
         if self.amplitude is None:
             return np.zeros(0)
         return np.atleast_1d(np.asarray(self.amplitude, dtype=float))
 
     @property
     def entry_count(self) -> int:
-        """Count the numbers of the input at one time; of a travelling wave, its numbers of one Legendre degree."""
+        """Number of entries of the input at one time; for a travelling wave, entries of one Legendre degree."""
         if self.is_table:
             _, count = self.knot_values.shape
             return int(count)
@@ -188,7 +188,7 @@ wave = "one_minus_cosine"
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """A table, a wave or a file; what belongs to another of the three is left out."""
+        """The motion is a table, a wave or a file, without keys of the other two."""
         table = [key for key in ("times", "values") if key in given]
         wave = [key for key in ("amplitude", "frequency") if key in given]
         file = [key for key in ("file",) if key in given]
@@ -208,7 +208,7 @@ wave = "one_minus_cosine"
     @model_validator(mode="before")
     @classmethod
     def _file_as_table(cls, given: Any) -> Any:
-        """Put the rows of the file where a table has them; a file with faults is left to the rules."""
+        """Put the rows of the file into times and values; the rules report a faulty file."""
         if not isinstance(given, Mapping) or not isinstance(given.get("file"), str):
             return given
         times, values, problems = _read(given["file"])
@@ -234,12 +234,12 @@ def _wave_faults(given: Table) -> Iterator[Fault]:
 
 
 def _travelling_faults(given: Table) -> Iterator[Fault]:
-    """Faults of a wavelength; it must not be so short that no series of Legendre polynomials has it."""
+    """Faults of a wavelength, which must not be too short for a series of Legendre polynomials."""
     if "wavelength" not in given:
         yield Fault(("wavelength",), "missing", "a travelling wave has one, relative to the length of the rod")
     for wavelength in numbers_of(given.get("wavelength")):
         envelope = coefficient_count(given.get("envelope"))
-        # Coefficients of a wave decay beyond the degree π/wavelength, by an envelope that many later.
+        # Coefficients of a wave decay beyond the degree π/wavelength, and an envelope adds its degrees.
         least = np.pi / (MOST_DEGREES - MARGIN_OF_DECAY - envelope) if envelope < MOST_DEGREES / 2 else np.inf
         if abs(wavelength) < least:
             problem = f"must be at least {least:.2g} in size, got {wavelength:g}"
@@ -268,7 +268,7 @@ def _table_faults(given: Table) -> Iterator[Fault]:
 def _file_faults(given: Table) -> Iterator[Fault]:
     yield from _without_wave(given)
     file = given["file"]
-    # What is no text has a fault of its own.
+    # A value that is not a text has its own fault.
     if not isinstance(file, str):
         return
     _, _, problems = _read(file)
@@ -285,7 +285,7 @@ def _without_wave(given: Table) -> Iterator[Fault]:
 
 
 def _read(file: str) -> tuple[list[float], list[list[float]], list[Problem]]:
-    """Times and values of a CSV file, a row for each time; both are empty where there are problems."""
+    """Times and values of a CSV file, a row for each time, and problems; both are empty if there are problems."""
     try:
         header, numbers, lines, problems = read_numbers(Path(file))
     except SceneError as error:
@@ -312,7 +312,7 @@ def _value_columns(header: Sequence[str]) -> list[str]:
     if given in ([], ["value"]):
         return ["value"]
     components = 4 if "value.w" in given else 3
-    # A number behind the axis is the degree of a Legendre coefficient.
+    # A number after the axis is the degree of a Legendre coefficient.
     matches = [re.fullmatch(r"value\.[xyz]\.([0-9]{1,2})", column) for column in given]
     degrees = [int(match[1]) for match in matches if match is not None]
     highest = max(degrees, default=0)

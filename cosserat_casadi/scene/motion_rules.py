@@ -1,4 +1,4 @@
-"""The rules of motions: what moves is an input of the scene, of as many numbers, on a path that it can follow."""
+"""Rules of motions: each moves an input of the scene, with its number of entries, on a path that it can follow."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from cosserat_casadi.scene.motion_records import InputMotion
 from cosserat_casadi.scene.records import Entry, sound
 
 LEAST_NORM = 0.1
-"""Norm of a quaternion on its way, over the largest one at the times of its tables, below which it has no direction."""
+"""Norm of a quaternion, over the largest one at the times of its tables, below which it has no direction."""
 
 DIGITS = 3
-"""Digits behind the point of the norm of a quaternion in a sentence."""
+"""Decimal places of the norm of a quaternion in a sentence."""
 
 
 class _Moving(NamedTuple):
@@ -35,7 +35,7 @@ def motions_of_no_input(scene: SceneTables) -> Iterator[Fault]:
     """Faults of motions of names that are no inputs or cannot be free, or of inputs that cannot follow them."""
     motions = scene.tables("motions")
     names = [motion.get("input") for _, motion in motions]
-    # Motions of each input that must not be zero, by their places; only where all of its motions are sound.
+    # Motions of each input that must not be zero, by index; only for inputs without faulty motions.
     turns: dict[str, dict[int, InputMotion]] = {}
     for i, table in motions:
         name = table.get("input")
@@ -48,13 +48,13 @@ def motions_of_no_input(scene: SceneTables) -> Iterator[Fault]:
             continue
         yield from below(("motions", i, "input"), field_faults(moving.field, moving.record, moving.table, scene))
         motion = sound(InputMotion, table)
-        # A motion with faults of its own has no values to judge.
+        # A faulty motion has no values to test.
         if motion is None:
             continue
         faults = list(_count_faults(motion, moving))
         if not faults:
             faults += _path_faults(motion, moving.declared, _duration(scene))
-            # Several motions of an input may leave its range one by one, and not together.
+            # Several motions of an input may leave its range one by one, while their sum does not.
             if names.count(name) == 1:
                 faults += _range_faults(motion, moving)
         if not faults and moving.declared.nonzero:
@@ -66,14 +66,14 @@ def motions_of_no_input(scene: SceneTables) -> Iterator[Fault]:
 
 
 def _is_of_unknown_kind(name: str, scene: SceneTables) -> bool:
-    """Whether the owner of an input is there, and its kind is not known: that is another fault."""
+    """Whether the owner of an input has an unknown kind, which is another fault."""
     owner, _, _ = name.partition(".")
     record, table = owners_of(scene).get(owner, (None, {}))
     return record is None and bool(table)
 
 
 def _input_of(name: str, scene: SceneTables) -> _Moving | None:
-    """The input of a name; None for a name that is no input."""
+    """The input with a name; None if there is none."""
     owner, _, field = name.partition(".")
     record, table = owners_of(scene).get(owner, (None, {}))
     if record is None or field not in record.free_fields(table):
@@ -82,7 +82,7 @@ def _input_of(name: str, scene: SceneTables) -> _Moving | None:
 
 
 def _names(scene: SceneTables) -> Iterator[str]:
-    """Names of all that may be free in a scene."""
+    """Names of all inputs that may be free in a scene."""
     for owner, (record, table) in owners_of(scene).items():
         if record is None:
             continue
@@ -92,12 +92,12 @@ def _names(scene: SceneTables) -> Iterator[str]:
 
 
 def _duration(scene: SceneTables) -> float:
-    """Time that is simulated, s; infinite where the scene does not say."""
+    """Simulated time, s; infinite if the scene does not give it."""
     return next(iter(numbers_of(table_of(scene.get("simulation")).get("duration"))), np.inf)
 
 
 def _count_faults(motion: InputMotion, moving: _Moving) -> Iterator[Fault]:
-    """The motion has another number of numbers than its input."""
+    """Faults of a motion with another number of entries than its input."""
     wanted = moving.declared.entry_count(moving.table.get(moving.field))
     if motion.travels:
         yield from _wave_faults(motion, moving, wanted)
@@ -112,7 +112,7 @@ def _count_faults(motion: InputMotion, moving: _Moving) -> Iterator[Fault]:
 
 
 def _wave_faults(motion: InputMotion, moving: _Moving, entries: int) -> Iterator[Fault]:
-    """A travelling wave moves what does not vary along a rod, or has another number of components."""
+    """Faults of a travelling wave of an input that does not vary along a rod, or has other components."""
     components = moving.declared.components
     if not moving.declared.polynomial:
         problem = f"travels along a rod, and {motion.input} has one value"
@@ -128,9 +128,9 @@ def _wave_faults(motion: InputMotion, moving: _Moving, entries: int) -> Iterator
 
 
 def _path_faults(motion: InputMotion, declared: InputField, duration: float) -> Iterator[Fault]:
-    """The path of a base or a length jumps, or has a kink where it would have to have a velocity."""
+    """Faults of the path of a base or a length: jumps, and kinks, at which it would have no velocity."""
     jumps = [time for time in motion.jumps if 0.0 < time <= duration]
-    # A velocity that the motion begins or ends with is no jump of it.
+    # A velocity at the beginning or the end of the motion is not a jump.
     kinks = [time for time in motion.kinks if 0.0 < time < duration]
     if jumps and declared.moves:
         problem = f"{motion.input} must not jump, and does at {jumps[0]:g} s"
@@ -141,7 +141,7 @@ def _path_faults(motion: InputMotion, declared: InputField, duration: float) -> 
 
 
 def _range_faults(motion: InputMotion, moving: _Moving) -> Iterator[Fault]:
-    """The only motion of an input takes it where it cannot be: a length to zero, a tension below it, a pull above 1."""
+    """Faults of an input's only motion that leaves its range: a length of zero, a tension below it, a pull above 1."""
     declared = moving.declared
     key = "values" if motion.is_table else "amplitude"
     if declared.nonzero and motion.is_table and not np.all(np.any(motion.knot_values, axis=1)):
@@ -157,18 +157,18 @@ def _range_faults(motion: InputMotion, moving: _Moving) -> Iterator[Fault]:
 
 
 def _zero_faults(motions: Mapping[int, InputMotion], duration: float) -> Iterator[Fault]:
-    """The sum of the tables of a quaternion comes so near to zero between two times that it has no direction there.
+    """Faults of the tables of a quaternion whose sum comes so near to zero that it has no direction.
 
-    Of waves nothing is said: they are no polynomials.
+    Waves are not tested, since they are not polynomials.
 
     Args:
-        motions: all of one input, by their places in the scene.
-        duration: time that is simulated, s.
+        motions: all motions of one input, by their index in the scene.
+        duration: simulated time, s.
     """
     tables = list(motions.values())
     if not all(motion.is_table for motion in tables):
         return
-    # The format bounds no number: what overflows is not judged.
+    # The format bounds no number: numbers that overflow are not tested.
     with np.errstate(over="ignore", invalid="ignore"):
         paths = [table_values(motion.knots, motion.knot_values, motion.interpolation) for motion in tables]
 
@@ -176,7 +176,7 @@ def _zero_faults(motions: Mapping[int, InputMotion], duration: float) -> Iterato
             return np.asarray(np.sum([of_table(times) for of_table in paths], axis=0))
 
         knots = np.unique(np.concatenate([motion.knots for motion in tables]))
-        # Squares of very large or very small numbers would be no numbers.
+        # Squares of very large or very small numbers would overflow or underflow.
         largest = float(np.hypot.reduce(total(knots), axis=1).max())
         end = min(duration, knots[-1])
         inside = knots[(knots > 0.0) & (knots < end)]
@@ -186,7 +186,7 @@ def _zero_faults(motions: Mapping[int, InputMotion], duration: float) -> Iterato
         least, time = least_norm(total, cuts)
     if least > LEAST_NORM * largest:
         return
-    # Rounding would be told as a norm that is small, and is none.
+    # A norm that is rounding would otherwise be reported as small.
     norm = round(least / largest, DIGITS) if largest > 0.0 else 0.0
     first, motion = next(iter(motions.items()))
     problem = (
@@ -198,7 +198,7 @@ def _zero_faults(motions: Mapping[int, InputMotion], duration: float) -> Iterato
 
 
 def _extremes(motion: InputMotion, moving: _Moving) -> tuple[float, float]:
-    """Least and largest value of an input of one number on its path, at the times of a table; infinite without any."""
+    """Least and largest value of a scalar input on its path, at the times of a table; infinite without any."""
     if motion.is_table:
         return float(motion.knot_values.min()), float(motion.knot_values.max())
     start = numbers_of(moving.table.get(moving.field))

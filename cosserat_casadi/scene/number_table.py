@@ -14,7 +14,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 
 MOST_TOLD = 20
-"""Faults of one table that are told; a file may have one in every row."""
+"""Most reported faults of one table; a file may have one in every row."""
 
 SEPARATORS = (";", "\t")
 """Separators of columns in tables of other programs; no name of a column has them."""
@@ -24,7 +24,7 @@ def read_numbers(path: Path) -> tuple[list[str], FloatArray, list[int], list[Pro
     """Header of a CSV file, its numbers, shape (count, columns), the line of each row, and every fault of its cells.
 
     Raises:
-        SceneError: the file cannot be read, or holds no row.
+        SceneError: the file cannot be read, or has no row.
     """
     header, rows = read_rows(path)
     problems = [Problem(str(path), f"has the column {column} twice") for column in repeated(header)]
@@ -38,17 +38,17 @@ def read_rows(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     """Header of a CSV file, and the line and the cells of each row that is not empty.
 
     Raises:
-        SceneError: the file cannot be read, or holds no row.
+        SceneError: the file cannot be read, or has no row.
     """
     header, rows = begun_rows(path)
     return header, list(rows)
 
 
 def begun_rows(path: Path) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
-    """Header and rows of a table, one row after the other: a file may be larger than memory.
+    """Header and rows of a table; rows are read one after the other, since a file may be larger than memory.
 
     Raises:
-        SceneError: the file cannot be read, as the rows may tell later, or holds no row.
+        SceneError: the file cannot be read, which may show only at a later row, or has no row.
     """
     rows = _filled_rows(path)
     _, names = next(rows, (0, []))
@@ -76,7 +76,7 @@ def _filled_rows(path: Path) -> Iterator[tuple[int, list[str]]]:
 
 
 def repeated(header: list[str]) -> list[str]:
-    """Columns that are there twice."""
+    """Names of columns that occur twice."""
     return sorted({column for column in header if header.count(column) > 1})
 
 
@@ -88,9 +88,9 @@ def length_faults(where: str, header: list[str], row: list[str]) -> list[Problem
 
 
 def finite_number(text: str) -> float | None:
-    """The number that a text is; None where it is none, or not finite."""
+    """The number in a text; None if it is not a number, or not finite."""
     if "_" in text:
-        # Python reads 1_0 as ten; in a table it is a slip.
+        # Python reads 1_0 as ten; in a table it is a typing error.
         return None
     try:
         value = float(text)
@@ -100,7 +100,7 @@ def finite_number(text: str) -> float | None:
 
 
 def shortened(problems: list[Problem], where: str) -> list[Problem]:
-    """The first faults, and how many more there are."""
+    """The first faults, and the number of the others."""
     if len(problems) <= MOST_TOLD:
         return problems
     further = len(problems) - MOST_TOLD

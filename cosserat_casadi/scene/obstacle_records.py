@@ -1,6 +1,6 @@
-"""Obstacles: what rods may not enter, and lumens, which they may not leave.
+"""Obstacles, which rods may not enter, and lumens, which they may not leave.
 
-A kind is a record here and a class in `obstacles/` that says how far a point is from its surface.
+A kind is a record here and a class in `obstacles/` with the distance of a point from its surface.
 """
 
 from __future__ import annotations
@@ -35,16 +35,16 @@ SHEARS = {3, 4}
 """Indices of the shears among the strains."""
 
 SMOOTH_KEYS = ("width", "stiffness", "damping", "slip_speed")
-"""Keys of an obstacle whose contact is smooth."""
+"""Keys of obstacles with smooth contact."""
 
 SMOOTH_NUMBERS = ("width", "stiffness")
-"""Keys of an obstacle whose contact is smooth that may be parameters."""
+"""Keys of obstacles with smooth contact that may be parameters."""
 
 SMOOTH_FORM = "give the obstacle a width, m, for a contact that is smooth, as in width = 1e-3"
-"""Remedy where exact contact is not found."""
+"""Remedy for exact contact that is not supported."""
 
 FEWEST_POINTS = 2
-"""Points of a lumen that make a line."""
+"""Least number of points of a lumen."""
 
 
 class Friction(Record):
@@ -78,12 +78,12 @@ Coefficients = Annotated[
 
 
 class ObstacleRecord(Entry):
-    """An obstacle: centre lines of rods keep away from it by the radius of their sections, and bodies by theirs.
+    """An obstacle: centre lines of rods keep away from it by the radius of their sections, bodies by their radius.
 
-    Without a width contact is exact and found at rest; with one it is smooth, a load like any other.
+    Contact without a width is exact and is found at rest; contact with a width is smooth, a load like any other.
 
     Attributes:
-        is_flat: whether its surface has one normal.
+        is_flat: whether its surface is a plane.
     """
 
     is_flat: ClassVar[bool] = False
@@ -143,12 +143,12 @@ class ObstacleRecord(Entry):
 
     @property
     def thickness(self) -> float:
-        """How far a rod has to go to be outside of it again, on its other side, m; infinite where it has none."""
+        """Distance through the obstacle to its other side, m; infinite for an obstacle without another side."""
         return inf
 
     @property
     def is_smooth(self) -> bool:
-        """Whether the obstacle pushes smoothly, from a width on."""
+        """Whether the obstacle has a width, and so smooth contact."""
         return self.width is not None
 
     @property
@@ -168,7 +168,7 @@ class ObstacleRecord(Entry):
 
     @property
     def presses_rods(self) -> bool:
-        """Whether there may be rods that may not enter it: it names some, or neither bodies nor disks."""
+        """Whether it acts on rods: it names some, or neither bodies nor disks."""
         return self.rods is not None or (self.bodies is None and self.disks is None)
 
     def concerns(self, rod: str) -> bool:
@@ -184,7 +184,7 @@ class ObstacleRecord(Entry):
         return self.disks is not None and row in self.disks
 
     def parameter_refusal(self, key: str) -> tuple[str, str] | None:
-        """Refuse all parameters but the push of a smooth contact: the rest decides where contacts are looked for."""
+        """Refuse parameters other than the push of smooth contact: the rest decides where contacts are searched."""
         if key in SMOOTH_NUMBERS:
             return super().parameter_refusal(key)
         problem = f"{key} of an obstacle decides where contacts are looked for, or how, and is no parameter"
@@ -192,7 +192,7 @@ class ObstacleRecord(Entry):
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """Faults of what smooth contact alone has, without width, and of obstacles on bodies."""
+        """Faults of keys of smooth contact without a width, and of obstacles on bodies."""
         yield from _misplaced_on_body(given)
         if "width" in given:
             if "restitution" in given:
@@ -204,7 +204,7 @@ class ObstacleRecord(Entry):
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
-        """Rods that are not round, bodies without radius; where contact is exact rods that shear."""
+        """Faults of rods that are not round, bodies without radius, and, for exact contact, rods that shear."""
         named = given.get("rods", [] if "bodies" in given or "disks" in given else None)
         exact = "width" not in given
         if exact and any("width" in other for _, other in scene.tables("obstacles")):
@@ -224,11 +224,11 @@ class ObstacleRecord(Entry):
 
 
 def _misplaced_on_body(given: Table) -> Iterator[Fault]:
-    """Faults of an obstacle on a body: settings that are refused beside it."""
+    """Faults of keys that an obstacle on a body must not have."""
     if "body" not in given:
         return
     if "rods" not in given:
-        # The rods that hold the body end at it, or in it: none is meant that is not named.
+        # The rods that hold the body end at it, or in it: the obstacle acts only on rods that it names.
         problem = "missing: which rods may not enter an obstacle on a body is not guessed, for some of them carry it"
         yield Fault(("rods",), problem, "name them, as in rods = ['finger']")
     for key in ("bodies", "disks"):
@@ -238,7 +238,7 @@ def _misplaced_on_body(given: Table) -> Iterator[Fault]:
 
 
 def _disks_without_contact(given: Table, scene: SceneTables, *, flat: bool) -> Iterator[Fault]:
-    """Rows of disks that are still rows, as reading makes bodies of rows that touch exactly; and such bodies."""
+    """Faults of rows of disks that reading could not convert to bodies for exact contact, and of such bodies."""
     if not flat:
         for key in ("disks", "bodies"):
             for i, name in enumerate(list_of(given.get(key))):
@@ -248,17 +248,17 @@ def _disks_without_contact(given: Table, scene: SceneTables, *, flat: bool) -> I
                     yield Fault((key, i), problem, "give width, m, or bodies with a radius alone, which are balls")
         return
     for i, name in enumerate(list_of(given.get("disks"))):
-        # A row that is faulty has faults of its own.
+        # A faulty row has its own faults.
         if sound(Disks, scene.table_named("disks", name)) is not None:
             problem = f"disks of {name!r} touch exactly, and their numbers are no parameters"
             yield Fault(("disks", i), problem, "give width, m, or leave those parameters out")
 
 
 def _unfit_bodies(given: Table, scene: SceneTables) -> Iterator[Fault]:
-    """Bodies that have no radius to keep."""
+    """Faults of bodies without a radius."""
     for i, name in enumerate(list_of(given.get("bodies"))):
         body = scene.table_named("bodies", name)
-        # A name that nothing has is refused with the other references.
+        # An unknown name is refused with the other references.
         if body and "radius" not in body:
             yield Fault(("bodies", i), f"the body {name!r} has no radius to keep", "give the body a radius, m")
         if "width" in given and "thickness" in body:
@@ -267,7 +267,7 @@ def _unfit_bodies(given: Table, scene: SceneTables) -> Iterator[Fault]:
 
 
 def _not_round(name: str, rod: Table) -> Iterator[Fault]:
-    """A section that has no radius to keep."""
+    """Faults of a section that is not round."""
     section = rod.get("section")
     if isinstance(section, Mapping) and not is_round(section):
         problem = f"the section of the rod {name!r} is not round: it has no radius to keep"
@@ -275,16 +275,16 @@ def _not_round(name: str, rod: Table) -> Iterator[Fault]:
 
 
 def without_exact_contact(name: str, rod: Table, smooth_form: str) -> Iterator[Fault]:
-    """Properties of a rod with which its exact contact cannot be computed; a smooth contact needs none of this.
+    """Faults of properties with which exact contact of a rod cannot be computed; smooth contact admits them.
 
     Args:
-        name: of the rod.
-        rod: its table.
-        smooth_form: how to have a smooth contact, for people.
+        name: name of the rod.
+        rod: table of the rod.
+        smooth_form: advice how to write smooth contact.
     """
     if SHEARS & set(admitted_strains(rod.get("strain"))):
-        # At a point of contact the centre line of a rod that shears would have a corner that points into the obstacle:
-        # contact spreads over a stretch as short as the section is high, which is not resolved.
+        # The centre line of a rod that shears would have a corner at a point of contact, pointing into the obstacle:
+        # contact spreads over a stretch as short as the height of the section, which is not resolved.
         problem = f"the rod {name!r} admits shear: its contact has a boundary layer as long as its section is high"
         remedy = f'{smooth_form}; or take strain = "kirchhoff", or leave the rod out of rods'
         yield Fault((), problem, remedy)
@@ -296,7 +296,7 @@ OBSTACLES: Family[ObstacleRecord] = Family("obstacles")
 
 @OBSTACLES.register
 class Plane(ObstacleRecord):
-    """All that lies behind a plane."""
+    """The half-space behind a plane."""
 
     example: ClassVar[str] = """\
 [[obstacles]]
@@ -318,18 +318,18 @@ rods = ["finger"]
 
 
 class RoundRecord(ObstacleRecord):
-    """A ball or a bar: what a rod could pass through, and be outside again."""
+    """A ball or a bar, which a rod could pass through to the other side."""
 
     radius: Positive = Field(description="its radius, m")
 
     @property
     def thickness(self) -> float:
-        """Diameter of the obstacle, m: how far a rod has to go to be outside of it again, on its other side."""
+        """Diameter of the obstacle, m: the distance through it to its other side."""
         return 2 * self.radius
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """Refuse a width that is not less than the radius: a rod in the middle would not be seen to be too deep."""
+        """Refuse a width that is not less than the radius: a rod in the middle would not count as too deep."""
         yield from super().conflicts(given)
         width, radius = given.get("width"), given.get("radius")
         if isinstance(width, int | float) and isinstance(radius, int | float) and 0 < radius <= width:
@@ -382,14 +382,14 @@ rods = ["finger"]
 
 
 CLOSEST_POINTS = 1e-12
-"""Least distance of neighbours on a line relative to the largest: the equations of the line have so many digits."""
+"""Least distance of neighbours on a line relative to the largest: below it the line's equations lose digits."""
 
 
 @OBSTACLES.register
 class Lumen(ObstacleRecord):
     """The inside of a tube, which rods may not leave: the balls about a smooth line through points.
 
-    Beyond its first and last point it goes on straight, with the radius that it has there: it is open at both ends.
+    Beyond its first and last point it continues straight with the radius there: it is open at both ends.
     """
 
     example: ClassVar[str] = """\
@@ -417,7 +417,7 @@ rods = ["finger"]
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """Two points at least, neighbours apart, and as many radii."""
+        """A lumen has two points at least, neighbours that are apart, and as many radii as points."""
         yield from super().conflicts(given)
         points = list_of(given.get("points"))
         if not points:

@@ -1,6 +1,6 @@
-"""Orientations as scenes write them: a quaternion, a tangent with a twist, a rotation vector, or angles about axes.
+"""Orientations in scenes: a quaternion, a tangent with a twist, a rotation vector, or angles about axes.
 
-The record of a table that has an orientation keeps it as its quaternion, whichever way it is written.
+The record of a table with an orientation keeps the orientation as a quaternion, in whichever way it is written.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from cosserat_casadi.scene.records import Record, refusal, sound
 from cosserat_casadi.scene.values import Direction, Number, Quadruple, Vector
 
 WAYS = ("tangent", "rotation_vector", "euler")
-"""Keys that say an orientation in place of a quaternion."""
+"""Keys that give an orientation instead of a quaternion."""
 
 ORIENTATION_KEYS = ("quaternion", "twist", *WAYS)
 """All keys of an orientation."""
 
 
 def _three_axes(value: str) -> str:
-    """Refuse what names no three axes."""
+    """Refuse values that do not name three axes."""
     if len(value) == 3 and (set(value) <= set("xyz") or set(value) <= set("XYZ")):
         return value
     raise refusal(
@@ -58,7 +58,7 @@ base = { euler = { sequence = "xyz", angles = [0.1, 0, 1.57] } }     # "XYZ": ab
 
 
 class Oriented(Record):
-    """A table with an orientation: its quaternion, or another way to say it, which the record keeps as that."""
+    """A table with an orientation, as a quaternion or in another notation, which the record converts to one."""
 
     tangent: Direction | None = Field(
         None,
@@ -85,7 +85,7 @@ class Oriented(Record):
 
     @classmethod
     def settled(cls, given: Table) -> Table:
-        """The table with a quaternion in place of what says it; as it is where that is faulty."""
+        """The table with a quaternion in place of the other keys; unchanged if these are faulty."""
         written = {key: given[key] for key in ("twist", *WAYS) if given.get(key) is not None}
         if not written or list(orientation_faults(given)):
             return given
@@ -97,7 +97,7 @@ class Oriented(Record):
 
 
 class _Ways(Record):
-    """The keys that say an orientation in place of a quaternion, alone."""
+    """The keys that give an orientation instead of a quaternion, as a record."""
 
     tangent: Direction | None = None
     twist: Number = 0.0

@@ -14,13 +14,13 @@ from cosserat_casadi.scene.toml import keys_are_too_deep
 from cosserat_casadi.spelling import likely_meant
 
 NAMED_LISTS = tuple(SINGULAR)
-"""Lists whose entries may begin a key by their name; of entries with one name, the last list's goes first."""
+"""Lists with entries whose names may begin a key; for a name in several lists the last list counts."""
 
 MOST_NAMES = 12
 """Names that a remedy lists."""
 
 _NOTHING = "there is no {} to set"
-"""Problem of a key that leads to nothing."""
+"""Problem of a key that does not exist."""
 
 
 @dataclass(frozen=True)
@@ -29,8 +29,8 @@ class Assignment:
 
     Attributes:
         key: its left side, as written.
-        leaf: path of the value that it sets.
-        created: path of the outermost table that exists only because of it; otherwise the leaf.
+        leaf: path of the set value.
+        created: path of the outermost table that the override has created; the leaf if it has created none.
     """
 
     key: str
@@ -45,15 +45,15 @@ class RefusedOverride(Exception):  # noqa: N818 - it never leaves the reading of
 def apply_overrides(
     tables: dict[str, Any], overrides: Sequence[str], known: Sequence[str]
 ) -> tuple[list[Assignment], list[Problem]]:
-    """Apply assignments in their order to the tables; a later one wins.
+    """Apply assignments to the tables in their order, so that later ones replace earlier ones.
 
     Args:
-        tables: the scene; it is changed.
+        tables: the tables of the scene, which are changed.
         overrides: texts ``key=value``.
         known: keys of a scene.
 
     Returns:
-        the assignments that were applied, the last one first, and problems of the refused ones.
+        the applied assignments, the last one first, and the problems of the refused ones.
     """
     applied: list[Assignment] = []
     refused: list[Problem] = []
@@ -79,17 +79,17 @@ def _value(text: str) -> Any:
             parsed = tomllib.loads(f"value = {text}")
         except (ValueError, RecursionError):
             parsed = {}
-    # A text with a line break may hold more assignments than one.
+    # A text with a line break could contain several assignments.
     if list(parsed) != ["value"]:
         raise RefusedOverride(f"{shown(text)} is not a TOML value", 'text stands in quotes: "body"; a list in brackets')
     return parsed["value"]
 
 
 def assign(tables: dict[str, Any], key: str, value: Any, known: Sequence[str]) -> Assignment:
-    """Set what a key names, with the tables that lead there.
+    """Set the value of a key, and create missing tables on its path.
 
     Raises:
-        RefusedOverride: there is nothing of that name to set.
+        RefusedOverride: the key does not exist.
     """
     container: Any = tables
     path: list[str | int] = []
@@ -98,7 +98,7 @@ def assign(tables: dict[str, Any], key: str, value: Any, known: Sequence[str]) -
     for depth in range(len(segments) - 1):
         index = _index(container, segments, depth)
         path.append(index)
-        # Tables that a scene leaves out, such as accuracy, are made on the way.
+        # Tables that a scene leaves out, such as accuracy, are created.
         if isinstance(container, dict) and index not in container:
             container[index] = {}
             created = created or tuple(path)
@@ -112,7 +112,7 @@ def assign(tables: dict[str, Any], key: str, value: Any, known: Sequence[str]) -
 
 
 def _from_root(tables: Mapping[str, Any], key: str, known: Sequence[str]) -> list[str]:
-    """The segments of a key from the root: a load, actuator, rod or support may stand for itself.
+    """The segments of a key from the root; a key may begin with the name of a load, actuator, rod or support.
 
     Raises:
         RefusedOverride: nothing has the name that the key begins with, or the key ends there.
@@ -137,15 +137,15 @@ def _segments(key: str) -> list[str]:
 
 
 def _known_names(word: str, lists: Mapping[str, str], known: Sequence[str]) -> str:
-    """A remedy for an unknown first word of a key: the name that it looks like, or the names of the scene's entries."""
+    """A remedy for an unknown first word of a key: a similar name, or the names of the scene's entries."""
     names = f"the scene has {', '.join([*lists][:MOST_NAMES])}, and tables such as accuracy.tolerance"
     return likely_meant(word, [*lists, *known]) or names
 
 
 def _lists_by_name(tables: Mapping[str, Any]) -> dict[str, str]:
-    """The list that each named entry stands in.
+    """The list of each named entry, by name.
 
-    A body that the file does not list has the name of the joint it stands for, which is the joint's alone.
+    A body that stands for a joint is left out: its name belongs to the joint alone.
     """
     lists = {}
     for key in NAMED_LISTS:
@@ -169,12 +169,12 @@ def _fields(entry: Mapping[str, Any]) -> list[str]:
 
 
 def _fields_in_words(name: str, entry: Mapping[str, Any]) -> str:
-    """A remedy for a key that stops at the name of an entry: the values that the entry has."""
+    """A remedy for a key that stops at the name of an entry: the keys of the entry."""
     return f"name one of {', '.join(f'{name}.{field}' for field in _fields(entry))}"
 
 
 def _index(container: Any, segments: Sequence[str], depth: int) -> Any:
-    """The key or index that a segment of a key means; entries of lists go by name or number.
+    """The key or index for a segment of a key; entries of lists are given by name or number.
 
     Raises:
         RefusedOverride: the container has no such entry.
@@ -194,7 +194,7 @@ def _index(container: Any, segments: Sequence[str], depth: int) -> Any:
 
 
 def _what_to_write(container: Any, segments: Sequence[str], depth: int) -> str:
-    """A remedy for an override whose segment at this depth leads to nothing."""
+    """A remedy for an override with a segment, at this depth, that does not exist."""
     after = segments[depth + 1 :]
     there = _written(segments[:depth])
     if isinstance(container, dict):
@@ -204,7 +204,7 @@ def _what_to_write(container: Any, segments: Sequence[str], depth: int) -> str:
         return f"{there} is one value: write {there}=…"
     names = [entry["name"] for entry in container if isinstance(entry, dict) and isinstance(entry.get("name"), str)]
     if names:
-        # Whoever leaves the name out goes on with a key of the entry.
+        # A segment that is a key of the entries means that the name of the entry was left out.
         rest = (
             after
             if re.fullmatch(r"[0-9]*", segments[depth]) or segments[depth] not in container[0]
@@ -219,10 +219,10 @@ def _what_to_write(container: Any, segments: Sequence[str], depth: int) -> str:
 
 
 def _refuse_missing_list(tables: dict[str, Any], assignment: Assignment) -> None:
-    """Undo an override of an entry of a list that the scene leaves out, which has become a table.
+    """Undo an override of an entry in a missing list, which was created as a table.
 
     Raises:
-        RefusedOverride: it was one.
+        RefusedOverride: the override was of this kind.
     """
     leaf = assignment.leaf
     for depth in range(len(assignment.created), len(leaf)):
@@ -239,7 +239,7 @@ def _refuse_missing_list(tables: dict[str, Any], assignment: Assignment) -> None
 
 
 def _written(segments: Sequence[str]) -> str:
-    """Segments as a user would write the key: names with points between, numbers in brackets."""
+    """The key of segments: names with dots between, numbers in brackets."""
     named = segments[1:] if segments[0] in NAMED_LISTS and len(segments) > 1 else segments
     shortest = segments if re.fullmatch(r"[0-9]+", named[0]) else named
     return re.sub(r"\.([0-9]+)(?=\.|$)", r"[\1]", ".".join(shortest))

@@ -1,7 +1,7 @@
 """Parameters: numbers of a scene that become arguments of the model's functions, by their names.
 
-A name is the dotted path of a key from the entry that has it, ``finger.material.youngs_modulus``; a part of what the
-key holds follows behind it: ``finger.section.radius.tip``, ``finger.intrinsic.curvature.y[1]``.
+A name is the dotted path of a key from the entry that has it, ``finger.material.youngs_modulus``; a part of its value
+follows after it: ``finger.section.radius.tip``, ``finger.intrinsic.curvature.y[1]``.
 """
 
 from __future__ import annotations
@@ -35,17 +35,17 @@ PARAMETER_LISTS = (
     "measurements",
     "tubes",
 )
-"""Lists of a scene whose numbers may be parameters; of entries with one name, that which has the key is meant."""
+"""Lists with numbers that may be parameters; among entries of one name the one with the key counts."""
 
 SPAN = ("start", "end")
 """Names of the two abscissae of a span."""
 
 Cell = tuple[int, int]
-"""A number of a key: its component, and its place along the rod."""
+"""Index of a number of a key: its component, and its place along the rod."""
 
 
 class Form(Enum):
-    """How a key holds its numbers: as a number, as numbers at base and tip, or as the components of a vector."""
+    """Form of a key's numbers: a number, numbers at base and tip, or the components of a vector."""
 
     NUMBER = "number"
     ENDS = "base and tip"
@@ -63,10 +63,10 @@ class Holder:
     """An entry of a scene that may have parameters.
 
     Attributes:
-        table: key of the list that it stands in.
-        index: its place there.
-        record: the entry; None where it is faulty.
-        name: of the entry, any value where it is faulty.
+        table: key of its list.
+        index: its index in the list.
+        record: the entry; None if it is faulty.
+        name: name of the entry; any value if it is faulty.
     """
 
     table: str
@@ -76,22 +76,22 @@ class Holder:
 
 
 Holders = Mapping[str, Sequence[Holder]]
-"""Entries by the words that a name may begin with: their own names, and ``joints[0]``."""
+"""Entries by the words with which a name may begin: their names, and ``joints[0]``."""
 
 
 @dataclass(frozen=True)
 class NamedNumbers:
-    """Numbers of a scene that have been named as one parameter.
+    """Numbers of a scene that one parameter names.
 
     Attributes:
         name: as the scene writes it.
         holder: the entry of the scene that has them.
-        keys: the key in the entry, behind the keys of the tables that lead there, and places in lists of tables.
+        keys: path of the key in the entry: keys of tables, and indices in lists of tables.
         unit: SI unit of each, "1" without unit.
-        form: how the key holds its numbers.
-        cells: which of the numbers of the key they are, column after column.
+        form: form of the key's numbers.
+        cells: indices of the numbers among those of the key, column after column.
         default: their values in the scene, shape (components, places along the rod).
-        tied: other numbers that follow these, each with its ratios to them, one for each cell.
+        tied: other numbers that follow these, with their ratios to these, one for each cell.
     """
 
     name: str
@@ -116,18 +116,18 @@ class NamedNumbers:
 
     @property
     def all_numbers(self) -> tuple[NamedNumbers, ...]:
-        """The numbers themselves, then the numbers that follow them."""
+        """These numbers, then the numbers that follow them."""
         return (self, *(numbers for numbers, _ in self.tied))
 
     @property
     def field(self) -> str:
-        """``owner.key`` with the keys of inner tables: the name that the key has among inputs."""
+        """``owner.key`` with the keys of inner tables: the name of the key as an input."""
         owner = self.holder.name or f"{self.holder.table}[{self.holder.index}]"
         return ".".join((owner, *self.keys))
 
     @property
     def cell_names(self) -> tuple[str, ...]:
-        """A name for each cell, which names that number alone."""
+        """A name for each cell alone."""
         rows = dict.fromkeys(row for row, _ in self.cells)
         columns = dict.fromkeys(column for _, column in self.cells)
         words = _component_words(self.keys[-1], self.form, len(rows))
@@ -160,10 +160,10 @@ class NamedNumbers:
 
 
 def named_numbers(name: str, holders: Holders) -> NamedNumbers | None:
-    """The numbers that a name stands for; None where their entry is faulty.
+    """The numbers of a name; None if their entry is faulty.
 
     Raises:
-        RefusedParameter: the name stands for no number that may be a parameter.
+        RefusedParameter: the name is not that of numbers that may be parameters.
     """
     # Both joints[0].position and joints.0.position are read.
     segments = re.sub(r"\[(\d+)\]", r".\1", name).split(".")
@@ -183,9 +183,9 @@ def named_numbers(name: str, holders: Holders) -> NamedNumbers | None:
 
 
 def tied_numbers(names: Sequence[str], holders: Holders) -> NamedNumbers | None:
-    """The numbers that the first of several names stands for, with the numbers of the other names, which follow them.
+    """The numbers of the first of several names, with the numbers of the other names, which follow them.
 
-    All keep the ratios that they have in the scene; equal numbers stay equal. None where some entry is faulty.
+    All keep their ratios in the scene; equal numbers stay equal. None if some entry is faulty.
 
     Raises:
         RefusedParameter: a name stands for no number that may be a parameter, or some cannot follow the first.
@@ -216,7 +216,7 @@ def _ratios(first: NamedNumbers, other: NamedNumbers) -> tuple[float, ...]:
 
 
 def _with_key(holders: Sequence[Holder], key: str) -> Holder:
-    """The entry that has a key, among entries of one name; the first entry where none has it."""
+    """The entry with a key, among entries of one name; the first entry if none has the key."""
     for holder in holders:
         if holder.record is None or key in keys_of(type(holder.record)):
             return holder
@@ -264,10 +264,10 @@ def _holds_tables(value: Any) -> bool:
 
 
 def _form(value: Any, *, along: bool, by_component: bool) -> Form:
-    """How a key holds its numbers.
+    """Form of a key's numbers.
 
     Raises:
-        RefusedParameter: it holds no number, or one that selects the structure of the model.
+        RefusedParameter: the value has no number, or one that selects the structure of the model.
     """
     if value is None:
         raise RefusedParameter("is not given in the scene", "give it a value: the parameter's default")
@@ -295,7 +295,7 @@ def _lengths(form: Form, value: Any) -> list[int]:
 
 
 def _chosen(key: str, form: Form, lengths: Sequence[int], parts: Sequence[str]) -> tuple[Cell, ...]:
-    """The cells that the parts of a name behind its key choose; without parts all, as many in every component.
+    """The cells that the parts of a name after its key choose; without parts all, equally many in each component.
 
     Raises:
         RefusedParameter: there is no such part.
@@ -304,7 +304,7 @@ def _chosen(key: str, form: Form, lengths: Sequence[int], parts: Sequence[str]) 
     rows = len(lengths)
     columns = max(lengths)
     chosen_rows: Iterable[int] = range(rows)
-    # A matrix of one row may get more.
+    # A matrix with one row may get further coefficients.
     if remaining and (rows > 1 or form is Form.MATRIX):
         row = _part(remaining.pop(0), _component_words(key, form, rows), rows, "component")
         chosen_rows = [row]
@@ -315,7 +315,7 @@ def _chosen(key: str, form: Form, lengths: Sequence[int], parts: Sequence[str]) 
         what = "value" if form is Form.ENDS else "coefficient"
         chosen_columns = [_part(remaining.pop(0), ends, columns, what)]
     if remaining == ["0"]:
-        # The one coefficient of a constant.
+        # A constant has one coefficient.
         remaining.clear()
     if remaining:
         problem = f"has no part {shown('.'.join(remaining))}"
@@ -333,7 +333,7 @@ def _component_words(key: str, form: Form, rows: int) -> Sequence[str]:
 
 
 def _part(word: str, words: Sequence[str], count: int, what: str) -> int:
-    """The place that a word, or a number, means."""
+    """The index that a word, or a number, means."""
     if word in words:
         return words.index(word)
     if word.isdigit() and int(word[:9]) < count:
@@ -343,7 +343,7 @@ def _part(word: str, words: Sequence[str], count: int, what: str) -> int:
 
 
 def _grid(form: Form, value: Any, cells: Iterable[Cell]) -> dict[Cell, Any]:
-    """The numbers of a key by their cells; numbers that a name adds to a shorter component are zero."""
+    """The numbers of a key by cell; numbers that a name adds to a shorter component are zero."""
     grid: dict[Cell, Any] = dict.fromkeys(cells, 0.0)
     if form is Form.NUMBER:
         grid[0, 0] = value
@@ -383,17 +383,17 @@ def parameter_faults(
     """Faults of the names of the parameters of a scene.
 
     Args:
-        names: what the scene gives as names, which may be faulty.
-        paths: where each stands.
+        names: values that the scene gives as names, which may be faulty.
+        paths: path of each name.
         holders: entries that may have parameters.
-        inputs: names of what stays free at run time already.
-        requests: names of what an identification makes an input, with who asks for it.
+        inputs: names of the free inputs.
+        requests: names of the inputs of an identification, with the table that asks for each.
     """
     free = set(inputs)
     first: dict[tuple[str, int, tuple[str, ...], Cell], str] = {}
     seen: set[str] = set()
     for name, path in zip(names, paths, strict=True):
-        # A text that is listed twice has a fault already.
+        # A name that is listed twice has a fault already.
         if not isinstance(name, str) or name in seen:
             continue
         seen.add(name)
@@ -423,10 +423,10 @@ def parameter_faults(
 
 
 def tie_faults(groups: Iterable[tuple[Sequence[Any], Path]], holders: Holders) -> Iterator[Fault]:
-    """Why names that are listed together cannot stand for one number; faults of single names have been told.
+    """Faults of names that are listed together but cannot be one parameter; single names are tested elsewhere.
 
     Args:
-        groups: names that are listed together, with where their list stands.
+        groups: names that are listed together, with the path of their list.
         holders: entries that may have parameters.
     """
     for names, path in groups:
@@ -445,7 +445,7 @@ def tie_faults(groups: Iterable[tuple[Sequence[Any], Path]], holders: Holders) -
 
 
 def holders_of(entries: Iterable[Holder]) -> dict[str, list[Holder]]:
-    """Entries of the lists that may have parameters, in the order of these, by the words that a name may begin with."""
+    """Entries that may have parameters, in the order of their lists, by the words with which a name may begin."""
     known: dict[str, list[Holder]] = {}
     for holder in sorted(entries, key=lambda holder: PARAMETER_LISTS.index(holder.table)):
         if isinstance(holder.name, str):

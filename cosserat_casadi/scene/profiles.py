@@ -1,6 +1,6 @@
-"""How a value varies along a rod: tables that say it in one notation for every key, and the lists that keys store.
+"""Profiles of values along a rod: tables, with one notation for every key, and the lists that keys store.
 
-A table is one of three, in the abscissa X or in 2X − 1; a plain list means one of them, by its key:
+There are three tables, in the abscissa X or in 2X − 1; the key decides which of them a plain list stands for:
 
 ================================  ==============================================
 ``{ base = 8e-3, tip = 4e-3 }``   values at both ends, linear between them
@@ -24,13 +24,13 @@ from cosserat_casadi.scene.faults import Fault, Table, shown
 from cosserat_casadi.spelling import closest
 
 MOST_CONVERTED = 10
-"""Most coefficients that are converted to other polynomials: powers of a higher degree lose half of their digits."""
+"""Most coefficients that are converted to other polynomials: powers of a higher degree would lose half their digits."""
 
 REMEDY = "give base and tip, or legendre, or powers"
 
 
 class Notation(Enum):
-    """Meaning of the numbers of a profile; the value says it in words."""
+    """Meaning of the numbers of a profile; the value is its description."""
 
     ENDS = "base and tip"
     LEGENDRE = "Legendre coefficients"
@@ -45,7 +45,7 @@ ENDS = ("base", "tip")
 
 
 class RefusedProfile(Exception):  # noqa: N818 - it never leaves the reading of scenes
-    """A table that says of no value how it varies: its faults."""
+    """Refusal of a table that is not a profile, with its faults."""
 
     def __init__(self, *faults: Fault) -> None:
         super().__init__(*faults)
@@ -57,7 +57,7 @@ class Profile:
     """A value along X.
 
     Attributes:
-        notation: what the numbers are.
+        notation: meaning of the numbers.
         numbers: values at base and tip, or coefficients of rising degree.
     """
 
@@ -66,7 +66,7 @@ class Profile:
 
     @property
     def table(self) -> str:
-        """The table of a scene file that says this profile, with twelve digits: base and tip where it is linear."""
+        """The table of a scene file for this profile, with twelve digits; base and tip if it is linear."""
         if len(self.numbers) == 2:
             base, tip = self.ends
             return f"{{ base = {base:.12g}, tip = {tip:.12g} }}"
@@ -90,7 +90,7 @@ class Profile:
         """This profile in another notation.
 
         Raises:
-            RefusedProfile: two values do not say it, or too many coefficients would lose their digits.
+            RefusedProfile: two values do not suffice, or too many coefficients would lose their digits.
         """
         if notation is self.notation:
             return self
@@ -115,7 +115,7 @@ class Profile:
             problem = f"must be a list of at most {MOST_CONVERTED} numbers, got {count}"
             remedy = "powers of a higher degree lose their digits"
             raise RefusedProfile(Fault((_key(self.notation),), problem, remedy))
-        # Numbers at the end of all range overflow; the ranges of the key refuse them.
+        # Numbers at the end of the range overflow; the ranges of the key refuse them.
         with np.errstate(all="ignore"):
             if self.notation is Notation.POWERS:
                 other = Polynomial(self.numbers).convert(kind=Legendre, domain=[0, 1]).coef
@@ -128,10 +128,10 @@ class Profile:
 
 
 def read_profile(table: Table) -> Profile:
-    """The profile that a table of the scene says.
+    """The profile of a table of the scene.
 
     Raises:
-        RefusedProfile: with every fault of the table.
+        RefusedProfile: the table is faulty; it lists every fault.
     """
     known = (*ENDS, *SERIES)
     faults = [Fault((key,), "unknown key", closest(str(key), known)) for key in table if key not in known]
@@ -150,7 +150,7 @@ def read_profile(table: Table) -> Profile:
 
 
 def ends_of(value: Any) -> tuple[float, ...]:
-    """Base and tip of a size as the file gives it: a number, a list of two or a table; none where it is faulty."""
+    """Base and tip of a size in the file, a number, a list of two or a table; empty if it is faulty."""
     if isinstance(value, Mapping):
         try:
             return read_profile(value).converted(Notation.ENDS).numbers
@@ -163,7 +163,7 @@ def ends_of(value: Any) -> tuple[float, ...]:
 
 
 def coefficient_count(value: Any) -> int:
-    """Number of Legendre coefficients of a component as the file gives it; 1 where it is faulty."""
+    """Number of Legendre coefficients of a component in the file; 1 if it is faulty."""
     if isinstance(value, list | tuple):
         return len(value)
     if isinstance(value, Mapping):
@@ -175,7 +175,7 @@ def coefficient_count(value: Any) -> int:
 
 
 def _notation_faults(given: list[str]) -> list[Fault]:
-    """Faults of keys against each other: one notation, and both ends of a linear one."""
+    """Faults of a table with several notations, or with one end of a linear one."""
     of_ends = [key for key in given if key in ENDS]
     of_series = [key for key in given if key in SERIES]
     if of_series and len(given) > 1:
@@ -187,7 +187,7 @@ def _notation_faults(given: list[str]) -> list[Fault]:
 
 
 def _value_faults(key: str, value: Any) -> list[Fault]:
-    """Faults of the value of one key, a number of ``base`` and ``tip``, else a list of numbers."""
+    """Faults of the value of one key: a number for ``base`` and ``tip``, else a list of numbers."""
     if key in ENDS:
         return _number_faults((key,), value)
     if not isinstance(value, list | tuple):

@@ -1,4 +1,4 @@
-"""Whether the tip of a rod can be where a support holds it, as far as its length and its plane tell."""
+"""Reach of a rod: whether its length and its plane allow its tip to be where a support holds it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from cosserat_casadi.scene.rod_records import IN_PLANE, SHEAR_AND_EXTENSION, Bas
 from cosserat_casadi.scene.values import NORM_SLACK, Quadruple, Triple
 
 LENGTH_SLACK = 1e-9
-"""Distance relative to the length of a rod that is put down to rounding."""
+"""Distance, relative to the length of a rod, that may be rounding."""
 
 
 def named_rod(name: Any, scene: SceneTables) -> Rod | None:
@@ -34,12 +34,12 @@ def out_of_reach(rod: Rod, position: Triple, orientation: Quadruple | None) -> I
     Args:
         rod: the rod, whose base is in the world.
         position: prescribed position of the tip, world axes, m.
-        orientation: prescribed orientation of the tip, w, x, y, z; None where it may turn.
+        orientation: prescribed orientation of the tip, w, x, y, z; None if the tip may turn.
 
     Yields:
-        faults with the key of the position or orientation that is out of reach as path.
+        faults with the key of the unreachable position or orientation as path.
     """
-    # A straight line is the shortest way between two points: no bending takes the tip further than the length.
+    # A straight line is the shortest connection of two points: bending cannot take the tip farther than the length.
     distance = math.dist(position, rod.base.position)
     reach = rod.length * (1 + LENGTH_SLACK)
     if _keeps_its_length(rod) and distance > reach:
@@ -57,10 +57,10 @@ def _keeps_its_length(rod: Rod) -> bool:
 
 
 def _stays_in_its_plane(rod: Rod) -> bool:
-    """Whether nothing turns or shears the rod out of the local x–z plane of its base."""
+    """Whether neither strains nor unloaded shape take the rod out of the local x–z plane of its base."""
     if not set(rod.admitted) <= IN_PLANE:
         return False
-    # The strains of the unloaded rod stay where the rod does not admit them.
+    # Strains that the rod does not admit keep their unloaded values.
     bending_x, _, torsion = rod.intrinsic.curvature
     _, shear_y, _ = rod.intrinsic.tangent
     return _is_constant((bending_x, torsion, shear_y), (0.0, 0.0, 0.0))
@@ -72,7 +72,7 @@ def _is_constant(components: Sequence[float | tuple[float, ...]], values: Sequen
         coefficients = component
         if not isinstance(coefficients, tuple):
             coefficients = (coefficients,)
-        # The Legendre polynomial of degree 0 is 1; those above have no part in a constant.
+        # The Legendre polynomial of degree 0 is 1; a constant has no higher degrees.
         constant, *higher = coefficients
         if constant != value or any(higher):
             return False
@@ -85,7 +85,7 @@ def _out_of_plane(rod: Rod, position: Triple, orientation: Quadruple | None) -> 
     from_base = ca.DM(position) - ca.DM(rod.base.position)
     in_base = rotate(base_Q_world, from_base)
     offset = abs(float(in_base[1]))
-    # The format bounds no position: an offset that is not a number has overflown, far out of the plane.
+    # The format does not bound positions: an offset that is NaN has overflowed, far out of the plane.
     if not offset <= LENGTH_SLACK * rod.length:
         yield Fault(("position",), f"{offset:.3g} m outside the plane of the rod", remedy)
     if orientation is None:

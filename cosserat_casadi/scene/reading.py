@@ -1,7 +1,7 @@
 """A scene from TOML: file, text or tables ↦ overrides ↦ `Scene`, or one `SceneError` with every fault.
 
-Whatever the bytes of a file are, the outcome is one of the two. Numbers that look as if they were in another unit than
-the format's are taken as they are, with a note.
+For every file the outcome is one of the two. Numbers that are probably in another unit than the format's are accepted,
+with a warning.
 """
 
 from __future__ import annotations
@@ -45,17 +45,17 @@ ANGLES = frozenset({"angle", "rest", "lower_stop", "upper_stop", "rotation"})
 """Keys of angles of hinges and of drives of tubes."""
 
 FURTHEST = 4 * math.pi
-"""Angle, rad, beyond the angle of most hinges and drives: 15° written as 15 is more."""
+"""Angle, rad, above the angles of most hinges and drives: 15° written as 15 exceeds it."""
 
 NEAR_ONE = 100.0
-"""Largest number, and inverse of the smallest one, of a rod or tube that is computed without units."""
+"""Largest number, and inverse of the smallest one, of a rod or tube that is written in dimensionless numbers."""
 
 SCENE_KEYS = tuple(keys_of(Scene))
 """Tables and plain keys of a scene."""
 
 
 def read_scene(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> Scene:
-    """Read a scene from a TOML file. Numbers that are likely in another unit are warned of through ``logging``.
+    """Read a scene from a TOML file; ``logging`` warns of numbers that are probably in another unit.
 
     Args:
         path: the file.
@@ -66,7 +66,7 @@ def read_scene(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> S
         the scene, validated.
 
     Raises:
-        SceneError: with every fault of the file and the overrides.
+        SceneError: the file or an override is faulty; it lists every fault.
     """
     file = Path(path)
     tables = parsed(file_text(file))
@@ -83,21 +83,21 @@ def parse_scene(text: str, overrides: Sequence[str] = ()) -> Scene:
         overrides: as in `read_scene`.
 
     Raises:
-        SceneError: with every fault.
+        SceneError: the scene is faulty; it lists every fault.
     """
     tables = parsed(text)
     return scene_from_dict(tables, overrides)
 
 
 def scene_from_dict(mapping: Mapping[str, Any], overrides: Sequence[str] = ()) -> Scene:
-    """Read a scene from the tables of a TOML file; they are left as they are.
+    """Read a scene from the tables of a TOML file, which are not changed.
 
     Args:
         mapping: tables as dictionaries, arrays as lists; files that they name are relative to the working directory.
         overrides: as in `read_scene`.
 
     Raises:
-        SceneError: with every fault.
+        SceneError: the scene is faulty; it lists every fault.
     """
     return _scene(mapping, overrides, Path())
 
@@ -115,16 +115,16 @@ def written_tables(path: str | os.PathLike[str], overrides: Sequence[str] = ()) 
 
 
 def files_read(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> list[Path]:
-    """The files that reading a scene reads: the scene file, and the tables that its motions and measurements name.
+    """The files of a scene: the scene file, and the tables that its motions and measurements name.
 
-    Of a scene that is refused, the tables that can be named before the refusal.
+    For a refused scene, these are the files that are known before the refusal.
 
     Args:
         path: the file.
         overrides: as in `read_scene`.
     """
     file = Path(path)
-    # A pipe cannot be read again, and is not overwritten.
+    # A pipe cannot be read twice, and cannot be overwritten.
     if not file.is_file():
         return []
     try:
@@ -137,17 +137,17 @@ def files_read(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> l
 
 
 def override_path(mapping: Mapping[str, Any], key: str) -> FaultPath:
-    """Path of what an override with this key sets: two keys with one path set one value.
+    """Path of the value that an override with this key sets: two keys with one path set one value.
 
     Args:
         mapping: tables of a scene.
         key: left side of an override, such as ``push.force`` or ``loads[0].force``.
 
     Raises:
-        SceneError: there is nothing of that name to set.
+        SceneError: the key does not exist.
     """
     try:
-        # Any value will do: what is asked is where it goes.
+        # The value does not matter for the path.
         assignment = assign(_copy(mapping), key, 0.0, SCENE_KEYS)
     except RefusedOverride as error:
         raise SceneError(Problem(key, *error.args)) from None
@@ -158,7 +158,7 @@ def _scene(mapping: Mapping[str, Any], overrides: Sequence[str], folder: Path) -
     try:
         tables = _copy(mapping)
         return _validated(tables, overrides, folder)
-    # Copying, reading and judging all go down the tables by recursion.
+    # Copying, reading and testing the tables are recursive.
     except RecursionError:
         raise SceneError(Problem("", TOO_DEEP)) from None
 
@@ -166,9 +166,9 @@ def _scene(mapping: Mapping[str, Any], overrides: Sequence[str], folder: Path) -
 def _validated(tables: Any, overrides: Sequence[str], folder: Path) -> Scene:
     if not isinstance(tables, dict):
         raise SceneError(Problem("", f"must be a table, got {shown(tables)}"))
-    # A refused override does not stop the reading: its problem comes together with those of the file.
+    # A refused override does not stop the reading: its problem is reported with those of the file.
     applied, problems = apply_overrides(tables, overrides, SCENE_KEYS)
-    # Rules take numbers for numbers of double precision.
+    # Rules assume numbers of double precision.
     faults = list(faults_of_range(tables))
     if faults:
         raise SceneError(*problems, *(problem_of(fault, applied) for fault in faults))
@@ -211,12 +211,12 @@ def _copy(value: Any) -> Any:
 
 
 def make_room_for_waves(tables: dict[str, Any]) -> None:
-    """Fill inputs that travelling waves move up with zeros; an input that its table leaves out is zero.
+    """Append zeros to inputs for the degrees of travelling waves; an input that is left out is zero.
 
-    Faulty tables stay as they are; the rules refuse them.
+    Faulty tables are not changed; the rules refuse them.
 
     Args:
-        tables: of a scene; they are changed.
+        tables: tables of a scene, which are changed.
     """
     scene = SceneTables(tables)
     for _, table in scene.tables("motions"):
@@ -226,14 +226,14 @@ def make_room_for_waves(tables: dict[str, Any]) -> None:
         name, _, field = motion.input.partition(".")
         record, owner = owners_of(scene).get(name, (None, {}))
         declared = None if record is None else record.inputs.get(field)
-        # Values at knots are no coefficients; the rules refuse waves of them.
+        # Values at knots are not coefficients; the rules refuse waves of such inputs.
         if declared is not None and declared.polynomial and isinstance(owner, dict) and "knots" not in owner:
             value = owner.get(field, [0.0] * declared.components)
             owner[field] = _filled_up(value, declared, motion.degrees)
 
 
 def _filled_up(value: Any, declared: InputField, degrees: int) -> Any:
-    """The value of an input with a list of at least so many coefficients for each component."""
+    """The value of an input with at least ``degrees`` coefficients for each component."""
     if declared.components == 1:
         return _component(value, degrees)
     if not isinstance(value, list):
@@ -252,7 +252,7 @@ def _component(value: Any, degrees: int) -> Any:
 
 
 def note_unlikely_units(scene: Scene) -> None:
-    """Warn of every number that is likely in another unit; of no size of a rod whose numbers are all near one."""
+    """Warn of each number that is probably in another unit; a rod with all numbers near one counts as dimensionless."""
     for note in _notes(scene):
         LOG.warning("%s", note)
 
@@ -273,7 +273,7 @@ def _notes(scene: Scene) -> Iterator[str]:
         density = material.get("density", math.inf)
         if density < LIGHTEST:
             yield f"{where}.material.density: {density:g} kg/m³ is lighter than foam (is it in kg/m³?)"
-        # A length that is a parameter is not known.
+        # The value of a length that is a parameter is unknown.
         longest = sum(lengths.values()) or math.inf
         for key, size in sizes.items():
             if size > longest:
@@ -286,12 +286,12 @@ def _notes(scene: Scene) -> Iterator[str]:
 
 
 def _numbers(record: Record | None, keys: Collection[str]) -> dict[str, float]:
-    """Values of some keys of a record that are one number each: no lists, and no expressions of parameters."""
+    """Values of some keys of a record that are single numbers, not lists or expressions of parameters."""
     return {key: value for key, value in record or () if key in keys and isinstance(value, float | int)}
 
 
 def _sizes(section: Record | None) -> dict[str, float]:
-    """Sizes of a section by key; of one from base to tip the larger."""
+    """Sizes of a section by key; the larger one of base and tip for a varying size."""
     tapered = {key: value for key, value in section or () if key in SIZES and isinstance(value, tuple)}
     ends = {key: max(value) for key, value in tapered.items() if all(isinstance(end, float | int) for end in value)}
     return _numbers(section, SIZES) | ends

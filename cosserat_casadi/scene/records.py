@@ -1,7 +1,7 @@
-"""Base class of all tables of a scene: a frozen record, all of whose faults come at once.
+"""Base class of all tables of a scene: a frozen record, with all faults reported at once.
 
-A record either holds what its fields promise or does not exist. The rules between keys and between tables look at what
-the file says, not at validated records, so that their faults come together with those of single values.
+A record exists only if all its fields are valid. Rules between keys and between tables read the tables of the file, not
+validated records, so that their faults are reported together with those of single values.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ REFUSED = "refused"
 
 
 def refusal(faults: Iterable[Fault]) -> ValidationError:
-    """Wrap faults in the exception that pydantic passes on."""
+    """Wrap faults in the exception that pydantic propagates."""
     lines = [_wrapped(fault) for fault in faults]
     return ValidationError.from_exception_data("scene", lines)
 
@@ -33,9 +33,9 @@ def restated(error: ValidationError, *, below: Path = (), faults: Iterable[Fault
     """Restate an error of pydantic deeper in the scene, or with more faults.
 
     Args:
-        error: what pydantic raised.
-        below: path that its locations are put behind.
-        faults: faults that follow the error's.
+        error: pydantic's exception.
+        below: path to put before its locations.
+        faults: further faults, after those of the error.
     """
     errors = error.errors(include_url=False)
     lines = [_line(details, below) for details in errors]
@@ -52,7 +52,7 @@ def _wrapped(fault: Fault) -> InitErrorDetails:
 def _line(details: ErrorDetails, below: Path) -> InitErrorDetails:
     kind: str | PydanticCustomError = details["type"]
     context = details.get("ctx", {})
-    # Pydantic knows its own types of errors by name; ours has to bring its sentence along again.
+    # Pydantic knows its own types of errors by name; our type needs its sentence again.
     if kind == REFUSED:
         kind = PydanticCustomError(REFUSED, "{problem}", context)
     location = (*below, *details["loc"])
@@ -60,14 +60,14 @@ def _line(details: ErrorDetails, below: Path) -> InitErrorDetails:
 
 
 def _as_given(value: Any) -> Any:
-    """Turn records back into the tables that they were read from; keys that were left out stay out."""
+    """Convert records back to the tables of which they were read; keys that were left out stay out."""
     if isinstance(value, PLAIN):
         return value
     if isinstance(value, LISTS):
         return [_as_given(entry) for entry in value]
     if isinstance(value, Mapping):
         return {key: _as_given(entry) for key, entry in value.items() if entry is not None}
-    # A scene may be built from records in Python as well as from tables; the rules see tables in both cases.
+    # A scene may be built from records in Python as well as from tables; rules get tables in both cases.
     if isinstance(value, BaseModel):
         return _as_given(value.model_dump(by_alias=True, exclude_unset=True))
     return value
@@ -85,9 +85,9 @@ class Record(BaseModel):
     """A table of the scene: frozen, without unknown keys, every number finite.
 
     Attributes:
-        example: the table as a scene has it, TOML, for the reference page. The page uses these names: the rods
-            "finger" and "arm", the body "platform", the load "push" and the actuator "cable".
-        namesakes: keys of other records, each with the key that has its part here.
+        example: an example of the table in TOML, for the reference page. The page uses these names: the rods "finger"
+            and "arm", the body "platform", the load "push" and the actuator "cable".
+        namesakes: keys of other records, each with the key of this record that has its meaning.
     """
 
     example: ClassVar[str] = ""
@@ -97,16 +97,16 @@ class Record(BaseModel):
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """Faults of keys against each other, in a table whose values may be faulty too."""
+        """Faults of combinations of keys, in a table whose values may be faulty too."""
         yield from ()
 
     @classmethod
     def settled(cls, given: Table) -> Table:
-        """A table as its fields take it; what can be written in several ways is written in one."""
+        """A table in the form of the fields: values with several notations are converted to one."""
         return given
 
     def parameter_refusal(self, key: str) -> tuple[str, str] | None:
-        """Why the numbers of a key cannot be a parameter, and what to do instead; None where they can."""
+        """Problem and remedy for a key whose numbers cannot be a parameter; None if they can."""
         return None
 
     @model_validator(mode="wrap")
@@ -115,7 +115,7 @@ class Record(BaseModel):
         faults: list[Fault] = []
         if isinstance(given, Mapping):
             faults = list(cls.conflicts(_as_given(given)))
-        # The rules go first but do not stop pydantic: its faults and theirs are reported together.
+        # The rules are applied first but do not stop pydantic: the faults of both are reported together.
         try:
             record = handler(cls.settled(given) if isinstance(given, Mapping) else given)
         except ValidationError as error:
@@ -126,7 +126,7 @@ class Record(BaseModel):
 
 
 def sound(record: type[RecordType], table: Table) -> RecordType | None:
-    """The record of a table; None where the table has faults."""
+    """The record of a table; None if the table has faults."""
     try:
         return record.model_validate(table)
     except ValidationError:
@@ -138,8 +138,8 @@ class Entry(Record):
 
     Attributes:
         inputs: fields that may stay free at run time, by name; the name of a field in an inner table has dots.
-        references: fields that name entries of other lists, each with the key of that list; a field may hold
-            one name or several.
+        references: fields that name entries of other lists, each with the key of the list; a field may have one name or
+            several.
     """
 
     inputs: ClassVar[Mapping[str, InputField]] = {}
@@ -147,25 +147,25 @@ class Entry(Record):
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
-        """Faults of a table against the rest of the scene.
+        """Faults of a table in combination with the rest of the scene.
 
         Args:
             given: the table, whose values may be faulty.
             scene: all tables of the scene.
 
         Yields:
-            faults, their paths counted from this table.
+            faults, with paths that begin at this table.
         """
         yield from ()
 
     @classmethod
     def free_fields(cls, given: Table) -> tuple[str, ...]:
-        """Fields of a table that may stay free at run time, where the table decides which."""
+        """Fields of a table that may stay free at run time; by default all inputs of the record."""
         return tuple(cls.inputs)
 
     @classmethod
     def input_conflicts(cls, field: str, given: Table, scene: SceneTables) -> Iterator[Fault]:
-        """Reasons why one of the free fields cannot stay free in this scene, without path."""
+        """Faults, without path, of a free field that cannot stay free in this scene."""
         yield from ()
 
     def input_upper(self, field: str) -> float:
@@ -175,7 +175,7 @@ class Entry(Record):
 
 
 class HashedTable(dict[str, Any]):
-    """A table whose keys are the user's: frozen with its record, and so it has a hash."""
+    """A table with keys by the user, frozen and hashable like its record."""
 
     def __hash__(self) -> int:  # type: ignore[override]
         return hash(tuple(self.items()))

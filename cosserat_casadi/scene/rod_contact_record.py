@@ -1,4 +1,4 @@
-"""Rods that touch rods, or themselves: contact of pairs of rods, which is smooth; or exact, in motion alone."""
+"""Contact of rods with rods, or with themselves: smooth, or, in motion alone, exact."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ MOST_RODS = 2
 """Rods of a pair."""
 
 SMOOTH_KEYS = ("width", "stiffness", "slip_speed")
-"""Keys of a contact that is smooth."""
+"""Keys of smooth contact."""
 
 
 class RodContact(Entry):
-    """Two rods that may not enter each other, or one that may not enter itself; without the table they do."""
+    """Two rods, or one rod and itself, that may not enter each other; rods without this table may."""
 
     example: ClassVar[str] = """\
 [[rod_contacts]]
@@ -77,7 +77,7 @@ width = 5e-4
 
     @property
     def label(self) -> str:
-        """The contact for people: its name, else its rods."""
+        """Name of the contact in messages: its name, or else its rods."""
         if self.name is not None:
             return self.name
         if self.rods is None:
@@ -106,7 +106,7 @@ width = 5e-4
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
-        """Rods without a radius, rods that always touch, and obstacles that are touched exactly."""
+        """Faults of rods without a radius, of rods that always touch, and of obstacles in exact contact."""
         named = given.get("rods")
         known = scene.named("rods")
         listed = named if isinstance(named, list | tuple) else known
@@ -134,7 +134,7 @@ width = 5e-4
 
 
 def _without_radius(name: str, rod: Table, width: Any) -> Iterator[Fault]:
-    """A rod that is not round, or not thicker than the width."""
+    """Faults of a rod that is not round, or not thicker than the width."""
     section = rod.get("section")
     if not isinstance(section, Mapping) or not is_round(section):
         problem = f"the rod {name!r} has no radius to keep"
@@ -149,7 +149,7 @@ def _without_radius(name: str, rod: Table, width: Any) -> Iterator[Fault]:
 
 
 def _ties(scene: SceneTables) -> Iterator[tuple[Any, Any]]:
-    """Ties: of rods to the rods that they start on, and to the bodies of their joints."""
+    """Pairs that are tied: rods with the rods that they start on, and with the bodies of their joints."""
     for name, (_, rod) in scene.named("rods").items():
         carrier = table_of(rod.get("base")).get("rod")
         if isinstance(carrier, str):
@@ -160,7 +160,7 @@ def _ties(scene: SceneTables) -> Iterator[tuple[Any, Any]]:
 
 
 def are_tied(first: str, second: str, ties: Iterable[tuple[Any, Any]]) -> bool:
-    """Whether one of two rods is tied to the other, or both to one thing."""
+    """Whether two rods are tied to each other, or to a common rod or body."""
     held: dict[str, set[Any]] = {first: set(), second: set()}
     for one, other in ties:
         for rod, holder in ((one, other), (other, one)):

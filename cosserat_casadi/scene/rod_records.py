@@ -76,10 +76,10 @@ StrainChoice = Annotated[
 class SectionRecord(Record):
     """A cross-section of a rod.
 
-    A shape is a record here and a class in model/sections.py that says what its area and second moments are.
+    A shape is a record here and a class in model/sections.py with its area and second moments.
 
     Attributes:
-        radius_key: the key of the radius by which a round section touches and meets a stream; None of others.
+        radius_key: key of the outer radius of a round section, for contact and flow; None for other shapes.
     """
 
     radius_key: ClassVar[str | None] = None
@@ -126,7 +126,7 @@ section = { shape = "annulus", outer_radius = 2.0e-3, inner_radius = 1.5e-3 }
         """The bore fits into the tube at both ends."""
         outer = ends_of(given.get("outer_radius"))
         inner = ends_of(given.get("inner_radius"))
-        # Both are linear in X: what holds at both ends holds between them.
+        # Both are linear in X, so that the test at both ends suffices.
         for bore, wall in zip(inner, outer, strict=False):
             if bore >= wall:
                 problem = f"must be < outer_radius at both ends, got {shown(bore)} in {shown(wall)}"
@@ -173,7 +173,7 @@ ShareOfStiffness = Annotated[Number, Field(gt=0, lt=1)]
 
 
 class PronyTerm(Record):
-    """A spring and a dashpot in series beside the rod's own elasticity: its stress relaxes."""
+    """A spring and a dashpot in series, in parallel with the rod's own elasticity: its stress relaxes."""
 
     example: ClassVar[str] = """\
 damping = { prony = [{ share = 0.2, time = 0.03 }, { share = 0.1, torsion = 0.05, time = 0.5 }] }
@@ -226,7 +226,7 @@ damping = { retardation_time = 0.01 }
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """The retardation time or coefficients, one of the two, or branches, or a share of mass; something is left."""
+        """Damping has a retardation time or coefficients, not both, or branches, or a part by mass; it is not empty."""
         coefficients = [name for name in STRAINS if name in given]
         if "retardation_time" in given and coefficients:
             yield Fault((coefficients[0],), "stands beside retardation_time", "give one of the two")
@@ -286,7 +286,7 @@ base = { rod = "arm", at = 0.5, tangent = [1, 0, 0] }     # branches off sideway
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """The tangent is an orientation already; a section has a rod; what a rod carries is not free."""
+        """A tangent excludes a quaternion, a section needs its rod, and a carried base is not free."""
         yield from super().conflicts(given)
         if "at" in given and "rod" not in given:
             yield Fault(("at",), "stands without rod", "name the rod that carries this one, or leave it out")
@@ -295,17 +295,17 @@ base = { rod = "arm", at = 0.5, tangent = [1, 0, 0] }     # branches off sideway
 
     @classmethod
     def settled(cls, given: Table) -> Table:
-        """A tangent without a twist is kept."""
+        """A tangent without a twist stays a tangent."""
         return given if given.get("tangent") is not None and "twist" not in given else super().settled(given)
 
     def parameter_refusal(self, key: str) -> tuple[str, str] | None:
-        """An orientation is a parameter as a quaternion."""
+        """Refuse an orientation as a parameter other than as a quaternion."""
         if key == "tangent" or (key == "quaternion" and self.tangent is not None):
             return "is given by a direction", "give the quaternion instead, and name that"
         return super().parameter_refusal(key)
 
     def held(self) -> Base:
-        """The base clamped where it starts."""
+        """This base, clamped at its initial pose."""
         return self.model_copy(update={"free": False}) if self.free else self
 
 
@@ -367,7 +367,7 @@ base = { position = [0, 0, 0.1], tangent = [1, 0, 0] }
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """The elasticity is given once, for every admitted strain; damping for no other; inertia with its mass."""
+        """The elasticity is given once, for every admitted strain; damping only for these; inertia only with mass."""
         yield from _elasticity_given_once(given)
         yield from _inertia_without_mass(given)
         admitted = [STRAINS[index] for index in admitted_strains(given.get("strain"))]
@@ -377,7 +377,7 @@ base = { position = [0, 0, 0.1], tangent = [1, 0, 0] }
             for name in admitted:
                 if name not in stiffness:
                     yield Fault(("stiffness", name), "missing", f"the rod admits {name}")
-        # Without a sound choice of strains none is known to be left out.
+        # Without a valid choice of strains none is known to lack a stiffness.
         if not admitted:
             return
         damping = table_of(given.get("damping"))
@@ -391,12 +391,12 @@ base = { position = [0, 0, 0.1], tangent = [1, 0, 0] }
 
     @classmethod
     def input_conflicts(cls, field: str, given: Table, scene: SceneTables) -> Iterator[Fault]:
-        """The pose of a base is free where it is in the world and cannot leave the plane that its tip is held in."""
+        """The pose of a base can be free only in the world, and without leaving the plane in which its tip is held."""
         if not field.startswith("base."):
             return
         name = given.get("name")
         base = table_of(given.get("base"))
-        # The base of a carried rod is an unknown, not an input, as is a free one.
+        # The base of a carried rod, and a free base, is an unknown, not an input.
         if "rod" in base:
             yield Fault((), f"{shown(name)} starts on another rod", "move the base of that one")
         elif base.get("free") is True:
@@ -405,7 +405,7 @@ base = { position = [0, 0, 0.1], tangent = [1, 0, 0] }
         # A joint at the base moves with it.
         held = any(table.get("rod") == name and table.get("at") != 0 for _, table in holding)
         admitted = set(admitted_strains(given.get("strain")))
-        # Constraints of a rod in a plane are those in its plane: out of it they would be too few.
+        # A rod in a plane has constraints in its plane alone: out of the plane they would be too few.
         if held and admitted <= IN_PLANE:
             problem = f"{shown(name)} bends in a plane and its tip is held"
             yield Fault((), problem, "admit torsion, or its base could leave the plane")
@@ -434,7 +434,7 @@ def _elasticity_given_once(rod: Table) -> Iterator[Fault]:
 
 
 def _not_positive(matrix: Any, admitted: Sequence[int]) -> Iterator[Fault]:
-    """Faults of a stiffness matrix: rows that do not mirror columns, or strains that would cost no energy."""
+    """Faults of a stiffness matrix that is not symmetric or not positive definite."""
     rows = [numbers_of(row) for row in list_of(matrix)]
     if len(rows) != len(STRAINS) or any(len(row) != len(STRAINS) for row in rows):
         return
@@ -456,7 +456,7 @@ def _not_positive(matrix: Any, admitted: Sequence[int]) -> Iterator[Fault]:
 
 
 def _inertia_without_mass(rod: Table) -> Iterator[Fault]:
-    """Faults of a rotary inertia beside material or section, from which it follows, or without a mass per length."""
+    """Faults of a rotary inertia with a material or a section, from which it follows, or without a mass per length."""
     if "rotary_inertia" not in rod:
         return
     made_of = [key for key in ("material", "section") if key in rod]
@@ -468,8 +468,8 @@ def _inertia_without_mass(rod: Table) -> Iterator[Fault]:
 
 
 def admitted_strains(strain: Any) -> tuple[int, ...]:
-    """Indices of the strains that the entry ``strain`` of a rod admits, ascending; none where it is faulty."""
+    """Ascending indices of the strains that the key ``strain`` of a rod admits; empty if it is faulty."""
     if isinstance(strain, str):
         return PRESETS.get(strain, ())
-    # In the order of the strains, whatever the order of the list.
+    # In the order of the strains, not of the list.
     return tuple(index for index, name in enumerate(STRAINS) if name in list_of(strain))

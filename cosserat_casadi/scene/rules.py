@@ -1,8 +1,7 @@
 """The rules between tables of a scene.
 
-They look at the tables of the file, whose values may be faulty. What hangs on geometry, joints that over-constrain or
-bodies that cannot close, is found by the model. A rule of one kind alone is a method of its record,
-``scene_conflicts``.
+They read the tables of the file, whose values may be faulty. The model finds faults of geometry, such as joints that
+over-constrain or bodies that cannot close. A rule for one kind alone is a method of its record, ``scene_conflicts``.
 """
 
 from __future__ import annotations
@@ -71,25 +70,25 @@ LISTS: dict[str, Family[Any] | type[Entry]] = {
 """Records or families of the lists of a scene."""
 
 OF_ONE_COLUMN = ("name", "columns", "inputs", "scale", "shift", "sigma", "held_out")
-"""Keys of a measurement that do not say which number of which rows it is."""
+"""Keys of a measurement that do not tell which number of which rows it is."""
 
 
 def scene_faults(given: Table) -> Iterator[Fault]:
-    """Faults of the tables of a scene against each other, by every rule."""
+    """Faults of combinations of tables of a scene, by every rule."""
     scene = SceneTables(given)
     for rule in RULES:
         yield from rule(scene)
 
 
 def _entries(scene: SceneTables) -> Iterator[tuple[Path, type[Entry], Table]]:
-    """Every table of the lists whose kind is known: its path, its record and the table."""
+    """Path, record and table of every entry of a known kind."""
     for key, kinds in LISTS.items():
         for i, table in scene.tables(key):
             if not isinstance(kinds, Family):
                 yield (key, i), kinds, table
                 continue
             record = kinds.record_of(table)
-            # A word that no kind has is refused where the table is read.
+            # An unknown word is refused as the table is read.
             if record is not None:
                 yield (key, i), record, table
 
@@ -103,7 +102,7 @@ def repeated_names(scene: SceneTables) -> Iterator[Fault]:
         named = scene.named(key)
         for i, table in scene.tables(key):
             name = table.get("name")
-            # Faulty names have a fault of their own; supports and joints need none.
+            # Faulty names have their own fault; supports and joints need no name.
             if not isinstance(name, str):
                 continue
             first, _ = named[name]
@@ -113,7 +112,7 @@ def repeated_names(scene: SceneTables) -> Iterator[Fault]:
 
 
 def shared_names(scene: SceneTables) -> Iterator[Fault]:
-    """A load, an actuator and a joint have one name: their inputs could not be told apart."""
+    """A load, an actuator or a joint share a name, so that their inputs could not be told apart."""
     taken: dict[str, str] = {name: f"loads[{i}]" for name, (i, _) in scene.named("loads").items()}
     for key in ("actuators", "joints"):
         for i, table in scene.tables(key):
@@ -130,12 +129,12 @@ def shared_names(scene: SceneTables) -> Iterator[Fault]:
 def dangling_names(scene: SceneTables) -> Iterator[Fault]:
     """A table refers to an entry that the scene does not have."""
     if not scene.named("rods") and not scene.named("tubes"):
-        # The rods have a fault already, and every reference would dangle.
+        # Missing rods have a fault already, and every reference would dangle.
         return
     for path, record, table in _entries(scene):
         for field_path, name, key in _references(record, table):
             if key == "rods" and scene.named("tubes"):
-                # What acts on rods names tubes where these take their place.
+                # Loads and others name tubes in a scene of tubes.
                 key = "tubes"
             known = scene.named(key)
             if name not in known:
@@ -144,10 +143,10 @@ def dangling_names(scene: SceneTables) -> Iterator[Fault]:
 
 
 def _references(record: type[Entry], table: Table) -> Iterator[tuple[Path, str, str]]:
-    """The names that a table refers to, each with its path in the table and the key of the list that has it."""
+    """The names that a table refers to, with the path in the table and the key of the list for each."""
     for field, key in record.references.items():
         value = table.get(field)
-        # One name, or a list of names.
+        # A value is one name, or a list of names.
         if record.model_fields[field].annotation in (str, str | None):
             if isinstance(value, str):
                 yield (field,), value, key
@@ -161,8 +160,8 @@ def _references(record: type[Entry], table: Table) -> Iterator[tuple[Path, str, 
 
 
 def own_rules(scene: SceneTables) -> Iterator[Fault]:
-    """The rules that a kind brings along."""
-    # What concerns one kind alone, such as the reach of a support, is written beside its record.
+    """Faults by the rules of single kinds."""
+    # A rule for one kind alone, such as the reach of a support, is written beside its record.
     for path, record, table in _entries(scene):
         yield from below(path, record.scene_conflicts(table, scene))
 
@@ -172,7 +171,7 @@ def weightless_rods(scene: SceneTables) -> Iterator[Fault]:
     load_on_all, load_on_rod = _gravity(scene)
     listed = [(key, i, rod) for key in ("rods", "tubes") for i, rod in scene.tables(key)]
     for key, i, rod in listed:
-        # One fault a rod, however many loads weigh it.
+        # One fault for each rod, however many loads of gravity act on it.
         load = load_on_all
         name = rod.get("name")
         if load is None and isinstance(name, str):
@@ -190,14 +189,14 @@ def weightless_rods(scene: SceneTables) -> Iterator[Fault]:
 
 
 def _gravity(scene: SceneTables) -> tuple[str | None, dict[str, str]]:
-    """The load that weighs every rod, if any, and the loads that weigh only rods that they name."""
+    """The gravity on every rod, if any, and loads of gravity on named rods alone."""
     load_on_all: str | None = None
     load_on_rod: dict[str, str] = {}
     for i, load in scene.tables("loads"):
         if load.get("kind") != "gravity":
             continue
         rods = load.get("rods")
-        # Gravity that names bodies alone weighs no rod.
+        # Gravity that names only bodies does not act on rods.
         if rods is None and "bodies" not in load:
             load_on_all = load_on_all or f"loads[{i}]"
         elif isinstance(rods, list):
@@ -220,7 +219,7 @@ def overlapping_supports(scene: SceneTables) -> Iterator[Fault]:
 
 
 def discretised_rods_that_are_not(scene: SceneTables) -> Iterator[Fault]:
-    """Faults of ``of_rods``: entries are of rods of the scene, once each, with one number for each strain."""
+    """Faults of ``of_rods``: entries name rods of the scene, each once, with one number of modes for each strain."""
     rods = scene.named("rods")
     first: dict[str, int] = {}
     for i, entry in enumerate(list_of(table_of(scene.get("accuracy")).get("of_rods"))):
@@ -244,7 +243,7 @@ def discretised_rods_that_are_not(scene: SceneTables) -> Iterator[Fault]:
 
 
 def miscounted_modes(scene: SceneTables) -> Iterator[Fault]:
-    """The modes that are listed are as many as the strains of each rod."""
+    """Faults of a list of modes with another number of entries than a rod has strains."""
     count = len(list_of(table_of(scene.get("accuracy")).get("modes")))
     for i, rod in scene.tables("rods"):
         admitted = len(admitted_strains(rod.get("strain")))
@@ -256,14 +255,14 @@ def miscounted_modes(scene: SceneTables) -> Iterator[Fault]:
 
 
 def sections_of_no_layer(scene: SceneTables) -> Iterator[Fault]:
-    """Sections at which layers are summed, where no obstacle presses a rod smoothly."""
+    """Faults of sections for layers in a scene without smooth contact of rods."""
     if scene.tables("tubes"):
-        # Of keys beside tubes their own rules tell.
+        # The rules of tubes refuse such keys beside tubes.
         return
     for _, table in scene.tables("obstacles"):
         record = OBSTACLES.record_of(table)
         obstacle = None if record is None else sound(record, table)
-        # A faulty obstacle has faults of its own.
+        # A faulty obstacle has its own faults.
         if obstacle is None or (obstacle.is_smooth and obstacle.presses_rods):
             return
     accuracy = table_of(scene.get("accuracy"))
@@ -275,7 +274,7 @@ def sections_of_no_layer(scene: SceneTables) -> Iterator[Fault]:
 
 
 def parameters_that_are_not(scene: SceneTables) -> Iterator[Fault]:
-    """A parameter, or an unknown, names no number of the scene, or one that cannot be a parameter."""
+    """Faults of parameters and unknowns that name no number of the scene, or one that cannot be a parameter."""
     groups: list[tuple[list[Any], Path]] = []
     for i, entry in enumerate(list_of(scene.get("parameters"))):
         groups.append((_listed_names(entry), ("parameters", i)))
@@ -307,12 +306,12 @@ def parameters_that_are_not(scene: SceneTables) -> Iterator[Fault]:
 def _fault_of_unknown(
     path: tuple[str, int, str], names: Sequence[str], first: dict[str, int], parameters: Sequence[list[Any]]
 ) -> Fault | None:
-    """An unknown has numbers of an earlier one, or some of a list of parameters; None where it has not.
+    """Fault of an unknown with numbers of an earlier one, or with some of a list of parameters; else None.
 
     Args:
-        path: of its names.
+        path: path of its names.
         names: the names of its numbers.
-        first: number of the unknown that each name is of; the names are added.
+        first: index of the first unknown with each name; the names are added.
         parameters: lists of names of parameters.
     """
     _, number, key = path
@@ -325,7 +324,7 @@ def _fault_of_unknown(
             problem = f"{shown(names)} and {shown(shared[0])} of parameters share numbers"
             return Fault(path, problem, "tie the same numbers in both, or leave one out")
         return None
-    # Of parameters the rules of `parameters` tell.
+    # The rules of `parameters` report faults of parameters.
     for other in first:
         if other != names[0] and overlap(names[0], other):
             return Fault(path, f"{shown(names[0])} and unknowns[{first[other]}] share numbers", "name each number once")
@@ -333,12 +332,12 @@ def _fault_of_unknown(
 
 
 def _listed_names(given: Any) -> list[Any]:
-    """The names of a key that holds one name or a list of names."""
+    """The names in a value that is one name or a list of names."""
     return list(given) if isinstance(given, list | tuple) else [given]
 
 
 def measured_twice(scene: SceneTables) -> Iterator[Fault]:
-    """Two measurements read a column of the same rows as the same number: it would count twice."""
+    """Faults of two measurements that read one column as the same number, which would count twice."""
     first: list[tuple[int, dict[str, Any], Sequence[Any]]] = []
     for i, table in scene.tables("measurements"):
         columns = list_of(table.get("columns"))

@@ -1,4 +1,4 @@
-"""The scene: rods, loads and constraints on them, and the questions that are asked."""
+"""The scene: rods, their loads and constraints, and settings for the commands."""
 
 from __future__ import annotations
 
@@ -46,8 +46,8 @@ class FreeInput:
 
     Attributes:
         record: the rod, tube, load, actuator or joint that it belongs to.
-        field: its name in that record, with dots where it is in an inner table.
-        declared: what the record says of it: unit, components, axes.
+        field: its name in that record, with dots for a field in an inner table.
+        declared: declaration by the record: unit, components, axes.
     """
 
     record: Rod | Tube | Load | Actuator | Joint
@@ -66,7 +66,7 @@ class FreeInput:
 
 
 class Scene(Shown, Record):
-    """Rods, and what acts on them. SI units, right-handed world axes."""
+    """Rods with their loads and constraints. SI units, right-handed world axes."""
 
     example: ClassVar[str] = """\
 schema = 1
@@ -130,12 +130,12 @@ inputs = ["push.force", "cable.tension"]
 
     @property
     def causes(self) -> tuple[Load | Actuator, ...]:
-        """Loads, then actuators: all that may have an input."""
+        """Loads, then actuators."""
         return (*self.loads, *self.actuators)
 
     @property
     def input_owners(self) -> tuple[Load | Actuator | Joint, ...]:
-        """Loads and actuators, then joints with a name: all but rods and tubes that may have an input."""
+        """Owners of inputs other than rods and tubes: loads, actuators, then joints with a name."""
         return (*self.causes, *(joint for joint in self.joints if joint.name is not None))
 
     def free_inputs(self) -> tuple[FreeInput, ...]:
@@ -145,7 +145,7 @@ inputs = ["push.force", "cable.tension"]
             listed inputs in their order; rotations and translations of tubes, then magnitudes of loads, then of
             actuators, in the order of the file.
         """
-        # An empty list is an answer too: nothing stays free.
+        # An empty list means that nothing stays free.
         if self.inputs is not None:
             return tuple(self._named_input(name) for name in self.inputs)
         of_tubes = [FreeInput(tube, *entry) for tube in self.tubes for entry in tube.inputs.items()]
@@ -158,7 +158,7 @@ inputs = ["push.force", "cable.tension"]
         return (*of_tubes, *magnitudes)
 
     def input_names(self) -> tuple[str, ...]:
-        """Names ``load.field`` of what stays free at run time, in the order of `free_inputs`."""
+        """Names ``load.field`` of the free inputs, in the order of `free_inputs`."""
         inputs = self.free_inputs()
         return tuple(entry.name for entry in inputs)
 
@@ -180,8 +180,8 @@ inputs = ["push.force", "cable.tension"]
         """The scene with other numbers for one parameter, and for the numbers that follow it.
 
         Args:
-            numbers: what to change.
-            values: one for each of its cells: numbers, which are not judged, or expressions.
+            numbers: the numbers to change.
+            values: one for each of its cells: numbers, which are not checked, or expressions.
         """
         scene = self._with_cells(numbers, values)
         for tied, ratios in numbers.tied:
@@ -197,7 +197,7 @@ inputs = ["push.force", "cable.tension"]
 
     @property
     def rods_held_at_tips(self) -> set[str]:
-        """Names of the rods whose tips a support or a joint holds; a body that no other joint holds goes along."""
+        """Names of the rods with tips that a support or a joint holds; a body with one joint does not hold a tip."""
         bodies = [place.body for joint in self.joints for place in joint.places if place.body is not None]
         holding = [joint for joint in self.joints if joint.body is None or bodies.count(joint.body) > 1]
         tips = [joint for joint in holding if joint.at == 1.0]
@@ -205,62 +205,62 @@ inputs = ["push.force", "cable.tension"]
 
     @property
     def joints_with_coordinate(self) -> tuple[Joint, ...]:
-        """Joints with a name that a spring, a damper, a motor or a drive acts along."""
+        """Named joints with a coordinate: a spring, a damper, a motor, a stop or a drive acts along it."""
         return tuple(joint for joint in self.joints if joint.has_coordinate and joint.name is not None)
 
     @property
     def base_joints(self) -> dict[str, int]:
-        """Place in the list of the joint that holds the base of a rod, for each rod with one without a body."""
+        """Index of the joint, without a body, that holds the base of each rod with such a joint, by rod."""
         return {joint.rod: index for index, joint in enumerate(self.joints) if joint.rod and joint.at_base}
 
     @property
     def listed_bodies(self) -> list[Body]:
-        """Bodies that results list: bodies that stand for a disk or a joint are none."""
+        """Bodies that results list, without bodies that stand for a disk or a joint."""
         return [body for body in self.bodies if body.listed]
 
     @property
     def jointed_bases(self) -> set[str]:
-        """Names of the rods whose bases joints hold, be it to bodies: they float."""
+        """Names of the rods with bases that joints hold, to bodies too: these bases float."""
         return {joint.rod for joint in self.joints if joint.rod and joint.holds_base}
 
     @property
     def has_contact(self) -> bool:
-        """Whether rods may touch anything: obstacles, or rods."""
+        """Whether the scene has contact, with obstacles or between rods."""
         return bool(self.obstacles or self.rod_contacts)
 
     @property
     def touches_exactly(self) -> bool:
-        """Whether rods touch obstacles or rods exactly, which is found in motion, and of obstacles at rest."""
+        """Whether the scene has exact contact, which is found in motion, and for obstacles at rest too."""
         return any(not obstacle.is_smooth for obstacle in self.obstacles) or self.rods_touch_exactly
 
     @property
     def rods_touch_exactly(self) -> bool:
-        """Whether rods touch rods exactly, which is found in motion alone."""
+        """Whether the scene has exact contact between rods, which is found in motion alone."""
         return any(pair.exact for pair in self.rod_contacts)
 
     def without_exact_rods(self) -> Scene:
-        """The scene whose rods go through each other where they would touch exactly."""
+        """The scene without exact contact between rods, which then pass through each other."""
         return self.model_copy(update={"rod_contacts": ()}) if self.rods_touch_exactly else self
 
     @property
     def rubs(self) -> bool:
-        """Whether there is friction of contact that is smooth."""
+        """Whether there is friction in smooth contact."""
         smooth = any(obstacle.rubs and obstacle.is_smooth for obstacle in self.obstacles)
         return smooth or any(pair.rubs and not pair.exact for pair in self.rod_contacts)
 
     @property
     def rubs_exactly(self) -> bool:
-        """Whether there is friction of exact contact, which acts in motion."""
+        """Whether there is friction in exact contact, which acts in motion."""
         obstacles = any(obstacle.rubs and not obstacle.is_smooth for obstacle in self.obstacles)
         return obstacles or any(pair.rubs and pair.exact for pair in self.rod_contacts)
 
     def in_proportion(self) -> Scene:
-        """The scene whose materials have the coefficients of their Young's moduli: parameters scale whole laws."""
+        """The scene with coefficients of materials scaled to Young's moduli, which as parameters scale whole laws."""
         rods = []
         for rod in self.rods:
             material = None if rod.material is None else rod.material.in_proportion()
             rods.append(rod if material is rod.material else rod.model_copy(update={"material": material}))
-        # A scene of tubes names no rods, and may not.
+        # A scene of tubes must not have the key of rods.
         if all(changed is rod for changed, rod in zip(rods, self.rods, strict=True)):
             return self
         return self.model_copy(update={"rods": tuple(rods)})
@@ -278,13 +278,13 @@ inputs = ["push.force", "cable.tension"]
 
     @property
     def starts_unloaded(self) -> bool:
-        """Whether its motion begins in the unloaded shape: by its word, or, without one, as something in it swings."""
+        """Whether its motion begins in the unloaded shape: by its key, or, by default, if something in it swings."""
         if self.simulation is None or self.simulation.start is None:
             return any(rod.base.free for rod in self.rods) or any(self._swings(joint) for joint in self.joints)
         return self.simulation.start == "unloaded"
 
     def _swings(self, joint: Joint) -> bool:
-        """Whether a joint lets a rod at its base, or a body, and all on it, move without straining any rod."""
+        """Whether a joint lets a rod at its base, or a body, with all that it carries, move without straining a rod."""
         if joint.keeps_place:
             return False
         if joint.carries is None:
@@ -292,7 +292,7 @@ inputs = ["push.force", "cable.tension"]
         return any(self._dangles(joint, set(), {place.body}) for place in joint.places)
 
     def _dangles(self, joint: Joint, rods: set[str], bodies: set[str | None]) -> bool:
-        """Whether rods and bodies at one end of a joint, and all that they carry, are held by that joint alone."""
+        """Whether this joint alone holds the rods and bodies at one of its ends, with all that they carry."""
         others = [other for other in self.joints if other is not joint]
         among_bodies = [{other.body, other.carries.body} for other in others if other.carries is not None]
         more = True
@@ -303,7 +303,7 @@ inputs = ["push.force", "cable.tension"]
             rods |= {other.rod for other in others if other.holds_base and other.body in bodies}
             bodies |= {body for link in among_bodies if link & bodies for body in link}
             more = len(rods) + len(bodies) > before
-        # None stands for the world, and what leads to the other end of the joint is held there.
+        # None stands for the world; a chain to the other end of the joint is held there.
         ends = {joint.body, joint.carries.body} if joint.carries is not None else {None}
         looped = None in bodies or ends <= bodies
         supported = any(support.rod in rods for support in self.supports)
@@ -313,15 +313,15 @@ inputs = ["push.force", "cable.tension"]
         return not (looped or supported or in_world or by_other_rods)
 
     def with_motion_inputs(self) -> Scene:
-        """The scene in which the inputs that its motions move are free as well, behind its free inputs."""
+        """The scene in which the inputs of its motions are free too, after its free inputs."""
         # Several motions of one input add up.
         moving = dict.fromkeys(motion.input for motion in self.motions)
         return self._with_inputs(moving)
 
     def with_unknowns(self) -> Scene:
-        """The scene in which inputs set by its measurements are free, and unknowns are inputs or parameters.
+        """The scene in which inputs that measurements set are free, and unknowns are inputs or parameters.
 
-        Where something was measured over time, what moves is an input too.
+        With measurements over time the inputs of its motions are free too.
         """
         names = [name for measurement in self.measurements for name in measurement.set_inputs]
         names += [unknown.input for unknown in self.unknowns if unknown.input is not None]
@@ -343,11 +343,11 @@ inputs = ["push.force", "cable.tension"]
 
     @property
     def measured_over_time(self) -> bool:
-        """Whether something was measured in the motion of the scene, and not in its equilibria alone."""
+        """Whether there are measurements over time, in the motion of the scene."""
         return any(getattr(measurement, "time", None) is not None for measurement in self.measurements)
 
     def _with_inputs(self, names: Iterable[str]) -> Scene:
-        """The scene in which these inputs are free as well, behind its free inputs."""
+        """The scene in which these inputs are free too, after its free inputs."""
         free = self.input_names()
         further = [name for name in names if name not in free]
         if not further:
@@ -355,16 +355,16 @@ inputs = ["push.force", "cable.tension"]
         return self.model_copy(update={"inputs": (*free, *further)})
 
     def held(self) -> Scene:
-        """The scene in which free bases are clamped where they start, as at the beginning of a motion."""
+        """The scene with free bases clamped at their initial poses, as at the beginning of a motion."""
         if not any(rod.base.free for rod in self.rods):
             return self
         rods = tuple(rod.model_copy(update={"base": rod.base.held()}) for rod in self.rods)
         return self.model_copy(update={"rods": rods})
 
     def of_equations(self) -> Scene:
-        """The scene without what no equation of motion reads: title, motions, rates of rods, times.
+        """The scene without the keys that do not enter the equations: title, motions, rates of rods, times.
 
-        A body whose velocity is given has a pose among the unknowns, whatever the velocity is.
+        A body with a given velocity has its pose among the unknowns, for every value of the velocity.
         """
         of_bodies = tuple(InitialVelocity(body=velocity.body) for velocity in self.velocities if velocity.rod is None)
         without = {"title": "", "motions": (), "velocities": of_bodies, "simulation": None}
@@ -372,7 +372,7 @@ inputs = ["push.force", "cable.tension"]
 
     def _named_input(self, name: str) -> FreeInput:
         owner, _, field = name.partition(".")
-        # The rules have seen to it that every listed input has its owner and is one of its fields.
+        # The rules have checked that every listed input has its owner and is one of its fields.
         records: dict[str | None, Rod | Load | Actuator | Joint] = {rod.name: rod for rod in self.rods}
         # Inputs of a load, an actuator or a joint hide those of a rod of the same name.
         for cause in self.input_owners:
@@ -382,5 +382,5 @@ inputs = ["push.force", "cable.tension"]
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """Faults of tables that contradict each other, or that name a thing that is not in the scene."""
+        """Faults of tables that contradict each other, or that name something unknown."""
         yield from scene_faults(given)

@@ -1,4 +1,4 @@
-"""How a motion is computed: how long, from where, how exactly."""
+"""Settings of the computation of a motion: duration, start, accuracy."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from cosserat_casadi.scene.records import Record
 from cosserat_casadi.scene.values import NotEmpty, NotNegative, Number, Positive, Whole
 
 TOLERANCE = 1e-3
-"""Error of the paths of tips, relative to the rod length, where the scene asks for none: enough for a film."""
+"""Default tolerance of the paths of tips, relative to the rod length: enough for a film."""
 
 FRAMES = 101
-"""Rows of a result where the scene says neither how many nor when."""
+"""Default number of rows of a result."""
 
 MOST_STEPS = 10_000_000
-"""Steps of one size that a scene may ask for: their polynomials take some 10 GB."""
+"""Most steps of one size that a scene may ask for: their polynomials take some 10 GB."""
 
 
 class Simulation(Record):
-    """How `cosserat simulate` computes the motion; all other commands leave it aside."""
+    """Settings of `cosserat simulate`; all other commands ignore them."""
 
     example: ClassVar[str] = """\
 [simulation]
@@ -70,12 +70,12 @@ start = "unloaded"
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """Frames or times; times that increase within the duration; a step that is neither longer nor far shorter."""
+        """Frames exclude times; times ascend within the duration; a step is neither longer nor far shorter than it."""
         if "frames" in given and "times" in given:
             yield Fault(("times",), "stands beside frames", "give one of the two")
         times = numbers_of(given.get("times"))
         yield from islice(not_ascending(times, ("times",), "time"), 1)
-        # A duration that is no number has a fault of its own, and bounds nothing.
+        # A duration that is not a number has its own fault, and bounds nothing.
         for duration in numbers_of(given.get("duration")):
             for i, time in enumerate(times):
                 if time > duration:

@@ -1,6 +1,6 @@
-"""Questions of the inverse problem: targets of sections and bodies, and ranges of the inputs that it looks for.
+"""The inverse problem: targets of sections and bodies, and ranges of the inputs that it determines.
 
-They do not act on the rods: a scene with targets is solved like one without.
+They do not act on the rods: a scene with targets is solved like a scene without them.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from cosserat_casadi.scene.values import Component, NotEmpty, Positive, Quaterni
 
 
 class TargetRecord(Entry):
-    """Where something is to be."""
+    """A target of the inverse problem."""
 
     weight: Positive = Field(1.0, description="weight against other targets where not all can be met, without unit")
     if TYPE_CHECKING:
@@ -30,7 +30,7 @@ TARGETS: Family[TargetRecord] = Family("targets")
 
 
 class FrameTarget(TargetRecord):
-    """Where a section of a rod, or a body, is to be."""
+    """A target for a section of a rod, or for a body."""
 
     references: ClassVar[Mapping[str, str]] = {"rod": "rods", "body": "bodies"}
 
@@ -46,7 +46,7 @@ class FrameTarget(TargetRecord):
 
 @TARGETS.register
 class PoseTarget(Oriented, FrameTarget):
-    """Position and orientation that a section or a body is to have."""
+    """Target for the position and orientation of a section or a body."""
 
     example: ClassVar[str] = """\
 [[targets]]
@@ -63,7 +63,7 @@ quaternion = [1, 0, 0, 0]
 
 @TARGETS.register
 class PositionTarget(FrameTarget):
-    """Position that a section or a body is to have, its orientation free."""
+    """Target for the position of a section or a body, with a free orientation."""
 
     example: ClassVar[str] = """\
 [[targets]]
@@ -78,7 +78,7 @@ position = [0.05, 0, 0.15]
 
 @TARGETS.register
 class CurveTarget(TargetRecord):
-    """Points that the centreline of a rod is to pass, as nearly as it can."""
+    """Points that the centreline of a rod should approach as nearly as it can."""
 
     example: ClassVar[str] = """\
 [[targets]]

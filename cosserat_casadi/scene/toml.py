@@ -1,4 +1,4 @@
-"""TOML text, from a file or not, to tables; whatever the bytes are, the outcome is tables or a `SceneError`."""
+"""TOML text, from a file or a string, to tables; for every text the outcome is tables or a `SceneError`."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ LARGEST = 1_000_000
 """Bytes of the largest scene that is read."""
 
 DEEPEST = 64
-"""Dots in one key of the deepest table that is read; the parser needs memory with the square of it."""
+"""Most dots in one key; the parser needs memory in proportion to the square of this number."""
 
 EMPTY = ("is empty", "a scene has schema = 1 and at least one [[rods]]")
 """Problem and remedy of a file without text."""
 
 TOO_DEEP = "is nested too deeply for a scene"
-"""Problem of tables that Python's parser, or its stack, is not made for."""
+"""Problem of tables that are too deep for Python's parser or its stack."""
 
 
 def file_text(path: Path) -> str:
@@ -96,15 +96,15 @@ def keys_are_too_deep(text: str) -> bool:
 
 
 def _most(pattern: str, parts: Iterable[str]) -> int:
-    """How often a pattern, which holds a dot, is in the part of a text that has it most often; 0 of few dots."""
+    """Largest number of matches of a pattern, which has a dot, in a part of a text; 0 for a text with few dots."""
     counts = [len(re.findall(pattern, part)) for part in parts if part.count(".") > DEEPEST]
     return max(counts, default=0)
 
 
 def _syntax_problem(message: str) -> Problem:
-    """A problem from the message of the parser, which ends in the line and column where there is one."""
+    """A problem from the message of the parser, which usually ends in line and column."""
     parts = re.fullmatch(r"(.*) \(at (.*)\)", message, re.DOTALL)
-    # Without one it comes from Python's own reading of a number of thousands of digits.
+    # Without these it is Python's refusal of a number with thousands of digits.
     if parts is None:
         return Problem("", "is not TOML: a number in it is beyond all range")
     problem, position = parts.groups()

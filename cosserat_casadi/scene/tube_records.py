@@ -31,7 +31,7 @@ BESIDE_TUBES = (
 """Keys of a scene that may stand beside tubes."""
 
 LOADS_ON_TUBES = ("tip_wrench", "point_wrench", "distributed_wrench", "gravity")
-"""Kinds of loads that act on tubes."""
+"""Kinds of loads that may act on tubes."""
 
 MEASURED_ON_TUBES = ("position", "pose")
 """Quantities that can be measured on tubes."""
@@ -131,7 +131,7 @@ translation = 0.15
         return self.straight + self.curved
 
     def input_upper(self, field: str) -> float:
-        """A tube is not pushed out of its drive; inf of its rotation."""
+        """Largest translation, m, at which a tube is still in its drive; inf for its rotation."""
         return self.length if field == "translation" else super().input_upper(field)
 
     @classmethod
@@ -158,7 +158,7 @@ translation = 0.15
 
 
 def tube_faults(scene: SceneTables) -> Iterator[Fault]:
-    """Tubes that stand beside rods or do not fit into each other; a scene without either."""
+    """Faults of tubes beside rods or tubes that do not fit into each other, and of a scene without either."""
     tubes = scene.tables("tubes")
     if scene.get("tubes") is None:
         if scene.get("rods") is None:
@@ -181,7 +181,7 @@ def tube_faults(scene: SceneTables) -> Iterator[Fault]:
 
 
 def _load_faults(scene: SceneTables) -> Iterator[Fault]:
-    """Loads that do not act on tubes, or in a way that tubes do not bear."""
+    """Faults of loads of kinds or forms that do not act on tubes."""
     names = scene.named("tubes")
     for index, load in scene.tables("loads"):
         kind = load.get("kind")
@@ -203,7 +203,7 @@ def _load_faults(scene: SceneTables) -> Iterator[Fault]:
 
 
 def _target_faults(scene: SceneTables) -> Iterator[Fault]:
-    """Targets for other places of tubes than their tips."""
+    """Faults of targets for other places on tubes than their tips."""
     for index, target in scene.tables("targets"):
         if target.get("kind") == "curve":
             remedy = "of tubes, give the pose or the position of a tip"
@@ -213,7 +213,7 @@ def _target_faults(scene: SceneTables) -> Iterator[Fault]:
 
 
 def _measurement_faults(scene: SceneTables) -> Iterator[Fault]:
-    """Quantities that are of rods, and measurements over time."""
+    """Faults of measured quantities that belong to rods, and of measurements over time."""
     for index, measurement in scene.tables("measurements"):
         quantity = measurement.get("quantity")
         if isinstance(quantity, str) and quantity not in MEASURED_ON_TUBES:
@@ -235,13 +235,13 @@ def _spread_faults(load: Table) -> Iterator[Fault]:
 
 
 def _reaches_out(tube: Table) -> bool:
-    """Whether a tube stands out of the plate; one with a faulty translation may."""
+    """Whether a tube stands out of the plate; a tube with a faulty translation may."""
     translation = numbers_of(tube.get("translation"))
     return not translation or translation[0] > 0.0
 
 
 def _nesting_faults(scene: SceneTables) -> Iterator[Fault]:
-    """Tubes, in the order of their size, that do not fit into the next one."""
+    """Faults of tubes, in the order of size, that do not fit into the next one."""
     walls: list[tuple[float, float, int, Any]] = []
     for index, tube in scene.tables("tubes"):
         section = table_of(tube.get("section"))

@@ -14,7 +14,7 @@ from cosserat_casadi.scene.records import Entry, Record
 from cosserat_casadi.scene.values import Component, Number, Positive, PositiveComponent, TiedNames, Whole, names_in
 
 MOST_STARTS = 10_000
-"""Places from which a search may be asked to begin."""
+"""Most starts of a search that a scene may ask for."""
 
 
 class Prior(Record):
@@ -33,7 +33,7 @@ prior = { mean = 2e-3, sigma = 2e-5 }
 
 
 class Unknown(Entry):
-    """A number of the scene that is to be found: a parameter, or an input."""
+    """An unknown number of the scene: a parameter, or an input."""
 
     example: ClassVar[str] = """\
 [[unknowns]]
@@ -104,7 +104,7 @@ per_row = true
 
 
 class IdentificationSettings(Record):
-    """How `cosserat identify` looks for the unknowns; all other commands leave it aside."""
+    """Settings of `cosserat identify`; all other commands ignore them."""
 
     example: ClassVar[str] = """\
 [identification]
@@ -135,7 +135,7 @@ starts = 8
 
 
 class Estimation(Record):
-    """How `cosserat estimate` looks for the unknowns of each row; all other commands leave it aside."""
+    """Settings of `cosserat estimate`; all other commands ignore them."""
 
     example: ClassVar[str] = """\
 [estimation]

@@ -1,4 +1,4 @@
-"""Values of a scene: numbers, vectors, orientations, names, and one-or-list choices, each with its refusals."""
+"""Types of values in a scene: numbers, vectors, orientations, names, and choices of one or several."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ from cosserat_casadi.scene.profiles import ENDS, SERIES, Notation, Profile, Refu
 from cosserat_casadi.scene.records import refusal
 
 ROUNDING = 1e-15
-"""Norms as near to 1 as this are left as they are: a value that is read, written and read again does not change."""
+"""Distance of a norm from 1 below which it is not changed, so that writing and reading a value does not change it."""
 
 NORM_SLACK = 1e-6
-"""Distance of a quaternion's norm from 1 that is put down to rounding in the file."""
+"""Distance of a quaternion's norm from 1 that may be rounding in the file."""
 
 ROUNDED = 1e-3
-"""Distance up to which a quaternion is taken for one with few digits: it is brought to norm 1, with a note."""
+"""Distance up to which a quaternion counts as one with few digits: it is scaled to norm 1, with a note."""
 
 LOG = logging.getLogger(__name__)
 
@@ -56,7 +56,7 @@ def listed(count: int, what: str) -> BeforeValidator:
 
 
 class NotEmpty:
-    """Refuse lists without entry: pydantic's own bound does not count entries that are faulty."""
+    """Refuse empty lists: pydantic's own bound does not count faulty entries."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_before_validator_function(self._check, handler(source))
@@ -71,7 +71,7 @@ class NotEmpty:
         return value
 
 
-# Marks tell pydantic's locations which choice was taken; ⟨ ⟩ cannot begin a key that the format knows.
+# Marks in pydantic's locations tell which choice was taken; no key of the format begins with ⟨.
 SINGLE = Tag("⟨one⟩")
 SEVERAL = Tag("⟨list⟩")
 
@@ -81,21 +81,21 @@ def _single_or_several(value: Any) -> str:
 
 
 BY_LENGTH = Discriminator(_single_or_several)
-"""Takes the choice marked `SEVERAL` for a list, the one marked `SINGLE` for anything else."""
+"""Discriminator: the choice marked `SEVERAL` for a list, the one marked `SINGLE` for anything else."""
 
 
 # What varies along X
 
 
 TABLE_TITLES = ("PositiveAlongRod", "NotNegativeAlongRod", "AlongRod")
-"""Titles of the tables of what varies: values > 0, values ≥ 0, any values."""
+"""Titles of the tables of varying values: values > 0, values ≥ 0, any values."""
 
 
 class Varying:
-    """Admit a table for what varies along X, beside a number and a plain list; it is read as the list of its key.
+    """Admit a table of values that vary along X, as well as a number and a plain list; it is read as the key's list.
 
     Attributes:
-        notation: what the numbers of a plain list are.
+        notation: meaning of the numbers of a plain list.
     """
 
     def __init__(self, notation: Notation) -> None:
@@ -106,7 +106,7 @@ class Varying:
 
     def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
         schema = handler(core)
-        # A number, whose range is that of the table's values too, and a list.
+        # A number, with the range of the table's values too, and a list.
         number, plain_list = schema["oneOf"]
         return {**schema, "oneOf": [number, plain_list, self._table_schema(number)]}
 
@@ -149,7 +149,7 @@ class Varying:
 
 
 def _range_faults(error: ValidationError, written: Profile, stored: Profile) -> Iterator[Fault]:
-    """Faults of the numbers that a table stands for, at the keys that the file gives."""
+    """Faults of the numbers of a table, at the keys of the file."""
     for details in error.errors(include_url=False):
         index = details["loc"][-1]
         got = shown(details["input"])
@@ -158,7 +158,7 @@ def _range_faults(error: ValidationError, written: Profile, stored: Profile) -> 
         for bound, sign in (("gt", ">"), ("ge", ">=")):
             if bound in context:
                 wanted = f"{sign} {context[bound]:g}"
-        # Coefficients of other polynomials have no key in the file.
+        # Converted coefficients have no key in the file.
         if stored.notation is not Notation.ENDS or not isinstance(index, int):
             yield Fault((), f"must be {wanted}, got {got}")
         elif written.notation is Notation.ENDS:
@@ -172,7 +172,8 @@ def _range_faults(error: ValidationError, written: Profile, stored: Profile) -> 
 
 def _unit_quaternion(value: Quadruple) -> Quadruple:
     norm = math.hypot(*value)
-    # Far from 1 it is a mistake, such as another order of the four numbers; near 1 it is rounding, and is mended.
+    # A norm far from 1 is a mistake, such as another order of the four numbers; near 1 it is rounding, and is
+    # corrected.
     if abs(norm - 1.0) > ROUNDED:
         problem = f"must have norm 1, got norm {norm:.9g}"
         raise refusal([Fault((), problem, "divide it by its norm; order w, x, y, z")])
@@ -197,7 +198,7 @@ def _direction(value: Triple) -> Triple:
 
 
 def without_repetition(value: tuple[str | tuple[str, ...], ...]) -> tuple[str | tuple[str, ...], ...]:
-    """Refuse names that are listed twice, be it in lists of names that stand for one number."""
+    """Refuse names that are listed twice, also in lists of names for one number."""
     seen: set[str] = set()
     faults = []
     for i, entry in enumerate(value):
@@ -212,12 +213,12 @@ def without_repetition(value: tuple[str | tuple[str, ...], ...]) -> tuple[str | 
 
 
 def names_in(entry: str | tuple[str, ...]) -> tuple[str, ...]:
-    """The names of an entry that is one, or several that are tied together."""
+    """The names in an entry, which is one name or several tied ones."""
     return (entry,) if isinstance(entry, str) else entry
 
 
 def _without_list_of_one(entry: str | tuple[str, ...]) -> str | tuple[str, ...]:
-    """The name alone where a list has no other: both spellings are one parameter."""
+    """The name itself for a list of one name: both spellings are one parameter."""
     names = names_in(entry)
     return names[0] if len(names) == 1 else entry
 
@@ -226,7 +227,7 @@ def above_base(remedy_at_base: str) -> AfterValidator:
     """Refuse abscissae X that are not above 0 and at most 1.
 
     Args:
-        remedy_at_base: what to do instead of naming the base.
+        remedy_at_base: advice for the abscissa of the base.
     """
 
     def check(value: float) -> float:
@@ -241,7 +242,7 @@ def above_base(remedy_at_base: str) -> AfterValidator:
 
 
 ABOVE_BASE: Any = Field(json_schema_extra={"exclusiveMinimum": 0, "maximum": 1})
-"""The range that `above_base` holds, for the JSON schema."""
+"""The range that `above_base` checks, for the JSON schema."""
 
 
 # Types

@@ -1,4 +1,4 @@
-"""Values that vary along a rod, as the scene file gives them: for whoever checks how a list was read."""
+"""Values that vary along a rod, in the notation of the scene file: to check how lists were read."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ class VaryingValue:
     """A value of a scene that varies along X.
 
     Attributes:
-        key: where it stands, such as ``finger.section.radius`` or ``cable.offset[0]``.
-        unit: of the numbers, "1" where they have none.
-        profile: as the file says it.
-        plain: whether the file gives a plain list, which its key gives its meaning.
+        key: its key, such as ``finger.section.radius`` or ``cable.offset[0]``.
+        unit: unit of the numbers, "1" for dimensionless ones.
+        profile: the profile in the notation of the file.
+        plain: whether the file has a plain list, whose meaning depends on the key.
     """
 
     key: str
@@ -31,12 +31,12 @@ class VaryingValue:
 
 
 def varying_values(scene: Scene, tables: Mapping[str, Any]) -> list[VaryingValue]:
-    """All values of a scene that its file gives by more than one number along X, in the order of the format."""
+    """All values of a scene with more than one number along X in its file, in the order of the format."""
     return list(_of_record(scene, tables, ""))
 
 
 def _of_record(record: Record, table: Mapping[str, Any], owner: str) -> Iterator[VaryingValue]:
-    """The values of a record and of those in it; what its table leaves out varies nowhere."""
+    """The varying values of a record and of records in it; keys that are left out do not vary."""
     for name, field in type(record).model_fields.items():
         key = field.alias or name
         if key not in table:
@@ -57,13 +57,13 @@ def _of_record(record: Record, table: Mapping[str, Any], owner: str) -> Iterator
 
 
 def _of_contents(contents: Any, written: Any, where: str) -> Iterator[VaryingValue]:
-    """The values of the record, or of the list of records, under a key; nothing where it holds something else."""
+    """The varying values of the record, or the list of records, under a key; nothing for other contents."""
     if isinstance(contents, Record):
         yield from _of_record(contents, written, where)
     elif isinstance(contents, tuple):
         for i, entry in enumerate(contents):
             if isinstance(entry, Record):
-                # As in overrides, an entry that has a name stands for itself.
+                # As in overrides, a key begins with the name of a named entry.
                 yield from _of_record(entry, written[i], written[i].get("name", f"{where}[{i}]"))
 
 
@@ -74,6 +74,6 @@ def _of_value(written: Any, mark: Varying, unit: str, where: str) -> Iterator[Va
         profile = Profile(mark.notation, tuple(written))
     else:
         return
-    # One number is a constant, however it is written.
+    # One number is a constant in every notation.
     if len(profile.numbers) > 1:
         yield VaryingValue(where, unit, profile, plain=isinstance(written, list))

@@ -1,4 +1,4 @@
-"""Initial velocities of free bases, bodies and strains: how a motion begins that does not begin at rest."""
+"""Initial velocities of free bases, bodies and strains, for a motion that does not begin at rest."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ curvature_rate = [0, { base = 2.0, tip = 0.0 }, 0]
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
-        """A base that is held, a strain that the rod does not admit, or an owner that has a velocity already."""
+        """Faults of a held base, of a strain that the rod does not admit, or of a second velocity of an owner."""
         for key in ("rod", "body"):
             others = [table for _, table in scene.tables("velocities") if key in given and table.get(key) == given[key]]
             if len(others) > 1:
@@ -89,6 +89,6 @@ curvature_rate = [0, { base = 2.0, tip = 0.0 }, 0]
 
 
 def _components(given: Table, key: str) -> list[tuple[str, Any]]:
-    """The three components of a key as the file has them; zero where it does not have three."""
+    """The three components of a key in the file; zeros if it does not have three."""
     rates = list_of(given.get(key))
     return [(key, rate) for rate in (rates if len(rates) == len(STILL) else STILL)]

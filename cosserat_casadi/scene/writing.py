@@ -11,14 +11,14 @@ from cosserat_casadi.scene.scene import Scene
 
 
 def scene_tables(scene: Scene) -> dict[str, Any]:
-    """A scene as the tables of its file: what the user gave, with defaults left out."""
+    """The tables of a scene's file: the given keys, without defaults."""
     return scene.model_dump(mode="json", by_alias=True, exclude_unset=True)
 
 
 def scene_text(scene: Scene) -> str:
-    """A scene as TOML; reading it gives the same scene."""
+    """A scene as TOML text; reading it gives an equal scene."""
     given = scene_tables(scene)
-    # TOML wants plain keys before the first table: after its heading they would belong to it.
+    # In TOML plain keys stand before the first table: after its heading they would belong to it.
     values = {key: value for key, value in given.items() if not _holds_tables(value)}
     blocks = [_lines(values)]
     for key, value in given.items():
@@ -37,7 +37,7 @@ def _holds_tables(value: Any) -> bool:
 
 
 def _lines(table: Mapping[str, Any]) -> str:
-    """A line for each key; tables in this table stand in their line, so that entries of lists stay whole."""
+    """A line for each key; inner tables are inline, so that entries of lists stay whole."""
     lines = [f"{entry}\n" for entry in _assignments(table)]
     return "".join(lines)
 
@@ -52,12 +52,12 @@ def _assignments(table: Mapping[str, Any]) -> list[str]:
 
 
 def _key(key: str) -> str:
-    """A key, in quotes where it is none of TOML's bare ones: a dot would mean a table."""
+    """A key, in quotes unless it is a bare key of TOML: a dot would mean a table."""
     return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else _value(key)
 
 
 def _value(value: Any) -> str:
-    """A TOML value; strings and numbers are written as in JSON, which TOML reads alike."""
+    """A TOML value; strings and numbers are written as in JSON, which TOML reads too."""
     if isinstance(value, dict):
         entries = ", ".join(_assignments(value))
         return f"{{ {entries} }}"
@@ -67,5 +67,5 @@ def _value(value: Any) -> str:
     if isinstance(value, float):
         return repr(value)
     text = json.dumps(value, ensure_ascii=False)
-    # JSON leaves DEL as it is, TOML refuses it.
+    # JSON does not escape DEL, which TOML refuses.
     return text.replace("\x7f", "\\u007f")

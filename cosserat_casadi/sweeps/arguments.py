@@ -1,4 +1,4 @@
-"""Columns of a table that become parameters of one compiled library, so that rows which differ in them share it."""
+"""Columns of a table that become parameters of one compiled library, which rows that differ in them share."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from cosserat_casadi.sweeps.sampling import column_ends, farthest_rows
 from cosserat_casadi.sweeps.scratch import Scratch
 
 COMPILED_FROM = 1000
-"""Rows of equal parameters from which a library is compiled for them; a sweep of inputs alone always has one.
+"""Least rows with equal parameters for which a library is compiled; a sweep of inputs alone always has one.
 
 To generate and compile one took 13 s for a rod of 12 unknowns where building its model in Python took 0.07 s and a
 solve there 5 to 20 ms: the two break even at about a thousand rows. Both costs grow with the size of the equations.
 """
 
 IN_CONTACT_FROM = 512
-"""Rows of one scene in exact contact from which a library is compiled for them. To find its contacts, to generate and
+"""Least rows of one scene in exact contact for which a library is compiled. To find its contacts, to generate and
 to compile it took 60 to 90 s of processor time for a rod of 15 unknowns, and a row in Python 0.25 s, in C 1 ms
 (``benchmarks/contact_rows.py``)."""
 
@@ -34,14 +34,14 @@ to compile it took 60 to 90 s of processor time for a rod of 15 unknowns, and a 
 def argument_columns(
     tables: Mapping[str, Any], columns: Sequence[str], chosen: Sequence[int], values: FloatArray, scratch: Scratch
 ) -> list[int]:
-    """Which columns a compiled library takes as parameters; none where too few rows would share it.
+    """Columns that a compiled library takes as parameters; none if too few rows would share it.
 
     Args:
-        tables: of the scene.
-        columns: of the table.
-        chosen: those among them that are no inputs.
-        values: of the table, shape (rows, columns).
-        scratch: where they lie.
+        tables: tables of the scene.
+        columns: columns of the table.
+        chosen: columns that are not inputs.
+        values: values of the table, shape (rows, columns).
+        scratch: storage of the values.
     """
     in_contact = any("width" not in obstacle for obstacle in tables.get("obstacles", []))
     compiled_from = IN_CONTACT_FROM if in_contact else COMPILED_FROM
@@ -64,18 +64,18 @@ def argument_columns(
         scene = scene_from_dict({**tables, "parameters": names})
         build(scene, discretise(scene, 1, 2))
     except SceneError:
-        # A load may be bound to where the unloaded rod was.
+        # A load may depend on the position of the unloaded rod.
         return []
     return arguments if touches_in_c(scene) or not scene.touches_exactly else []
 
 
 def touches_in_c(scene: Scene) -> bool:
-    """Whether a scene is in exact contact, and C knows all that it has."""
+    """Whether a scene is in exact contact, and C supports all its contents."""
     try:
         check_contact(scene, {})
     except ExportError:
         return False
-    # Errors of rods that carry bodies are those of sections between, of which C knows nothing.
+    # Error estimates of rods that carry bodies need sections between the ends, which C does not have.
     return scene.touches_exactly and not scene.bodies
 
 
@@ -89,14 +89,13 @@ def accepts_parameters(tables: Mapping[str, Any], names: Sequence[str]) -> bool:
 
 
 def extreme_rows(values: FloatArray, scratch: Scratch) -> list[int]:
-    """Rows that a scene is asked about in place of all: those nearest to the corners of every two columns.
+    """Rows that are tested instead of all rows: the rows nearest to the corners of every two columns.
 
-    What a scene refuses is a number beyond a bound, or two of which one must be less than the other; among all rows
-    these are the first to be refused.
+    A scene refuses numbers beyond a bound, or two numbers in the wrong order; these rows are the first to be refused.
 
     Args:
         values: shape (rows, columns).
-        scratch: where they lie.
+        scratch: storage of the values.
     """
     low, high = column_ends(values, scratch)
     columns = values.shape[1]
@@ -111,6 +110,6 @@ def extreme_rows(values: FloatArray, scratch: Scratch) -> list[int]:
     same = np.ones(columns)
     chosen = [0, *farthest_rows(values, ends, origin, same, scratch)]
     chosen += farthest_rows(values, corners, low, high - low, scratch)
-    # In the unit that both may have: the one that comes nearest to being larger than the other.
+    # In the common unit of both, the row in which one number comes nearest to exceeding the other.
     chosen += farthest_rows(values, corners, origin, same, scratch)
     return list(dict.fromkeys(chosen))

@@ -1,4 +1,4 @@
-"""One discretisation for all rows of a sweep, and how well it turns out to serve them."""
+"""One discretisation for all rows of a sweep, and its verification on some of them."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from cosserat_casadi.sweeps.table import Table
 from cosserat_casadi.sweeps.variants import Variants
 
 CHECKED = 6
-"""Rows that are solved again at the end."""
+"""Number of rows that are solved again at the end."""
 
 
 @dataclass(frozen=True)
@@ -36,10 +36,10 @@ class Choice:
     """A discretisation for all rows.
 
     Attributes:
-        discretisation: discretisation of all rods; None where the scene fixes it itself.
-        rows: rows of the table that the discretisation was chosen on.
-        converged: how many of these rows have an equilibrium on it.
-        error_estimate: largest estimated error of these rows on it; None where the scene chose, or no row converged.
+        discretisation: discretisation of all rods; None if the scene fixes it.
+        rows: rows of the table on which the discretisation was chosen.
+        converged: number of these rows with an equilibrium on it.
+        error_estimate: largest estimated error of these rows on it; None if the scene fixes it, or no row converged.
     """
 
     discretisation: Discretisation | None
@@ -73,7 +73,7 @@ class Choice:
 
     @classmethod
     def read(cls, plain: dict[str, Any]) -> Choice:
-        """The choice that data of a JSON file hold."""
+        """The choice from the data of a JSON file."""
         entries = plain["discretisation"]
         discretisation = None
         if entries:
@@ -84,16 +84,16 @@ class Choice:
 
 
 def choose(variants: Variants, table: Table, samples: int, progress: StageProgress) -> Choice:
-    """The smallest discretisation found that meets the tolerance on rows that stand for all.
+    """The smallest discretisation found that meets the tolerance on representative rows.
 
-    A scene that fixes modes, nodes or rotation is taken at its word. Rows without an equilibrium do not take part,
-    unless no row has one.
+    Modes, nodes or rotation that the scene fixes are used. Rows without an equilibrium are ignored, unless no row has
+    one.
 
     Args:
         variants: scenes and inputs of the table.
         table: the rows.
-        samples: rows to look at.
-        progress: told the work under way.
+        samples: number of representative rows.
+        progress: receives the work under way.
     """
     accuracy = variants.entries[0].scene.accuracy
     if accuracy.fixed:
@@ -104,7 +104,7 @@ def choose(variants: Variants, table: Table, samples: int, progress: StageProgre
     for row in rows:
         variant = variants.scene_of_row(row)
         text = scene_text(variant)
-        # Rows of equal scenes share one, and with it a model.
+        # Rows of equal scenes share the scene, and so its model.
         if text not in scenes:
             scenes[text] = unfixed(variant, accuracy.tolerance)
         cases.append(LoadCase(scenes[text], variants.inputs_of_row(row)))
@@ -127,25 +127,25 @@ def check(
     scratch: Scratch,
     progress: StageProgress,
 ) -> list[dict[str, Any]]:
-    """Some rows solved again in Python, with the estimates of their errors, whatever the rows tell of themselves.
+    """Verify some rows by solving them again in Python with error estimates, whatever the rows report.
 
     Args:
         variants: scenes and inputs of the table.
         choice: the discretisation.
-        outcomes: how rows ended, 0 where they hold an equilibrium, shape (rows,).
-        poses: of their tips and bodies, shape (rows, 7 tips and bodies).
-        scratch: where arrays with an entry for each row lie.
-        progress: told the work under way.
+        outcomes: outcomes of the rows, 0 for an equilibrium, shape (rows,).
+        poses: poses of tips and bodies, shape (rows, 7 tips and bodies).
+        scratch: storage of arrays with an entry for each row.
+        progress: receives the work under way.
 
     Returns:
-        for each row its number from 0, the estimated error, the distance of its poses from a solution in Python,
-        relative to the length, whether it is stable; None where the row has no equilibrium in
-        Python, or where stability has no meaning.
+        for each row its index from 0, the estimated error, the distance of its poses from a solution in Python,
+        relative to the length, whether it is stable; None if the row has no equilibrium in Python, or stability is not
+        defined.
     """
     candidates = scratch.joined(_converged(outcomes, poses, scratch), 4)
     if not candidates.size:
         return []
-    # Rows whose first tip lies at the corners of the workspace, where the rods are bent most.
+    # Rows with the first tip at the corners of the workspace, at which rods are bent most.
     chosen = representative_rows(candidates[:, 1:], CHECKED, scratch)
     rows = [int(row) for row in candidates[chosen, 0]]
     models: dict[str, Model] = {}
@@ -168,7 +168,7 @@ def check(
 
 
 def _converged(outcomes: npt.NDArray[np.int64], poses: FloatArray, scratch: Scratch) -> Iterator[FloatArray]:
-    """Numbers of the rows that hold an equilibrium, and the positions of their first tips, block by block."""
+    """Indices of the rows with an equilibrium, and the positions of their first tips, block by block."""
     for block in scratch.blocks(len(outcomes)):
         converged = np.flatnonzero(outcomes[block] == 0)
         yield np.column_stack([block.start + converged, poses[block, :3][converged]])
@@ -178,8 +178,8 @@ def pose_difference(poses: FloatArray, solution: Solution) -> float:
     """Largest pose error of a row of a sweep against a solution: distance over length, angle in rad.
 
     Args:
-        poses: of tips and bodies in the row, shape (7 tips and bodies,).
-        solution: of the row.
+        poses: poses of tips and bodies in the row, shape (7 tips and bodies,).
+        solution: solution of the row.
     """
     scene = solution.model.scene
     length = max(rod.length for rod in scene.rods)

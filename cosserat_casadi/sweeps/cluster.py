@@ -1,7 +1,7 @@
 """A sweep on an existing cluster of dask.distributed, which is an extra and is imported inside functions only.
 
-Sources go to the workers as text and are compiled there, once on each machine. A worker that dies loses the chunks that
-it was at, and the scheduler gives them to another: every chunk comes back, and the store keeps each but once.
+Sources go to the workers as text and are compiled there, once on each machine. A worker that dies loses its present
+chunks, and the scheduler gives them to another one: every chunk comes back, and the store keeps each only once.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ AHEAD = 256
 """Chunks that the scheduler has at once: enough for many workers, few enough for its memory."""
 
 TRIES = 3
-"""Times that a client is made, where dask's own thread does not begin in time."""
+"""Attempts to make a client, whose thread in dask may not begin in time."""
 
 PATIENCE = 15
-"""Seconds in which a scheduler has to answer."""
+"""Time in which a scheduler has to answer, s."""
 
 
 class ClusterError(CosseratError):
-    """The cluster cannot be used as it is."""
+    """The cluster cannot be used."""
 
     page = "sweeps"
 
@@ -51,7 +51,7 @@ class Cluster(AbstractContextManager["Cluster"]):
         waiting: dict[str, Chunk] = {}
         finished = as_completed(loop=self._client.loop)
         for chunk, parts in tasks:
-            # Pure tasks would be kept by a hash of their arguments, which takes longer than it saves.
+            # Pure tasks would be cached by a hash of their arguments, which costs more than it saves.
             future = self._client.submit(_solve, *self._arguments(chunk, parts), pure=False)
             waiting[future.key] = chunk
             finished.add(future)
@@ -61,7 +61,7 @@ class Cluster(AbstractContextManager["Cluster"]):
             yield _taken(next(finished), waiting)
 
     def _arguments(self, chunk: Chunk, parts: Sequence[Part]) -> tuple[Any, ...]:
-        """Answers and inputs; a compiled library travels as the result of a task, which any worker can make anew."""
+        """Solver and inputs of a chunk; a compiled library is the result of a task, which every worker can repeat."""
         if not chunk.compiled:
             return tuple(parts), None
         # A compiled chunk has one part.
@@ -102,7 +102,7 @@ def _connected(make_client: Any, address: str) -> Any:
 
 
 def _check_workers(client: Any) -> None:
-    """Refuse workers that would compute something else, or nothing."""
+    """Refuse a scheduler without workers, and workers without this package or with another version."""
     try:
         client.wait_for_workers(1, timeout=PATIENCE)
         versions = client.run(_version)

@@ -1,4 +1,4 @@
-"""Rows of a sweep on a GPU, experimental; or by the same source on a processor."""
+"""Rows of a sweep on a GPU, which is experimental, or from this source on a processor."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.scene import Scene
 
 DEVICE_ROWS = 65_536
-"""Rows of a chunk that a GPU solves: some for each of its threads."""
+"""Number of rows of a chunk for a GPU: some for each of its threads."""
 
 _LOCK = threading.Lock()
 """Lock by which threads take turns on the device: they share its workspaces."""
@@ -39,7 +39,7 @@ class DeviceRows:
     results: int
 
     def solve(self, inputs: FloatArray) -> FloatArray:
-        """Rows of results for rows of inputs with parameters behind them.
+        """Rows of results for rows of inputs followed by parameters.
 
         Raises:
             ExportError: the device refuses.
@@ -53,7 +53,7 @@ class DeviceRows:
         behind = judged + len(found["results"])
         rows[:, judged:behind] = found["results"].T
         if behind < self.results:
-            # What was not solved has no error.
+            # Rows that were not solved have no error.
             rows[:, behind] = np.where(found["status"] == 0, found["error_estimate"], np.nan)
         return rows
 
@@ -77,7 +77,7 @@ def device_rows(model: Model, device: str, *, estimate_errors: bool) -> DeviceRo
 
 
 def device_problems(scene: Scene, device: str, *, stability: bool) -> list[Problem]:
-    """Why the rows of a scene cannot be solved on a device.
+    """Problems of a scene whose rows cannot be solved on a device.
 
     Raises:
         ExportError: it is a GPU, and there is none, or no compiler for it.

@@ -1,9 +1,9 @@
 """Grids and random samples written as TOML.
 
 A column is a number, a list of numbers, ``{ from, to, count }``, ``{ uniform = [low, high] }`` or
-``{ normal = [mean, deviation] }``. The rows are every combination of the first three kinds, the last column running
-fastest. Random columns are drawn ``samples`` times with ``seed``; every draw stands beside every combination, so that
-one rod drawn is met under all loads.
+``{ normal = [mean, deviation] }``. The rows are all combinations of the first three kinds; the last column runs
+fastest. Random columns are drawn ``samples`` times with ``seed``; every draw is combined with all these rows, so that
+each drawn rod is solved under all loads.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from cosserat_casadi.scene.faults import shown
 from cosserat_casadi.sweeps.scratch import MEMORY, Scratch
 
 MOST_ROWS = 20_000_000
-"""Rows of the largest grid that is made."""
+"""Most rows of a grid."""
 
 RANGE = ("from", "to", "count")
 RANDOM = {"uniform": "low and high", "normal": "mean and deviation"}
@@ -62,19 +62,19 @@ def read_tables(path: Path) -> dict[str, Any]:
 
 
 def grid(tables: Mapping[str, Any], where: str, scratch: Scratch = MEMORY) -> tuple[tuple[str, ...], FloatArray]:
-    """Columns and rows of a grid given as tables; those who call the file name it by ``where``.
+    """Columns and rows of a grid given as tables.
 
     Args:
         tables: of the file.
-        where: what a refusal calls it.
-        scratch: where the rows are to lie.
+        where: name of the table in refusals.
+        scratch: storage for the rows.
 
     Raises:
         SceneError: with every fault.
     """
     problems: list[Problem] = []
     axes, samples = _axes(tables, where, problems)
-    # Counted before the rows are made: a grid too large would not fit into memory.
+    # Counted before the rows are made, since a grid that is too large would not fit into memory.
     combinations = math.prod(len(axis) for axis in axes.values() if not isinstance(axis, _Random))
     problems += too_many_rows(combinations * samples, where)
     refuse(problems)
@@ -83,7 +83,7 @@ def grid(tables: Mapping[str, Any], where: str, scratch: Scratch = MEMORY) -> tu
 
 
 def paired_draws(tables: Mapping[str, Any], where: str) -> tuple[tuple[str, ...], FloatArray, tuple[str, ...]]:
-    """Columns and rows of the design that Sobol indices are estimated on, and its random columns.
+    """Columns and rows of the design for the estimate of Sobol indices, and its random columns.
 
     Two independent draws A and B of ``samples`` rows each, then for each random column A with that column of B. See
     :mod:`cosserat_casadi.sweeps.sobol`.
@@ -111,7 +111,7 @@ def paired_draws(tables: Mapping[str, Any], where: str) -> tuple[tuple[str, ...]
 def _axes(
     tables: Mapping[str, Any], where: str, problems: list[Problem]
 ) -> tuple[dict[str, FloatArray | _Random], int]:
-    """The columns of a grid and how often random ones are drawn; faults go to the problems."""
+    """The columns of a grid and the number of draws of random ones; faults are added to the problems."""
     axes: dict[str, FloatArray | _Random] = {}
     columns = {key: entry for key, entry in tables.items() if key not in ("samples", "seed")}
     for name, entry in _leaves(columns):
@@ -140,10 +140,10 @@ class _Refused(Exception):  # noqa: N818 - it never leaves this module
 
 
 def _leaves(tables: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Columns of nested tables: ``push.force.x`` may be written with its dots as TOML takes them, or in quotes."""
+    """Columns of nested tables: ``push.force.x`` may be written as a dotted key, or in quotes."""
     for key, entry in tables.items():
         name = f"{prefix}{key}"
-        # An entry that is no column itself holds columns.
+        # An entry that is not a column contains columns.
         if isinstance(entry, dict) and entry and not set(entry) & {*RANGE, *RANDOM}:
             yield from _leaves(entry, f"{name}.")
         else:
@@ -151,7 +151,7 @@ def _leaves(tables: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, 
 
 
 def _axis(entry: Any) -> FloatArray | _Random:
-    """The values of a column, or how to draw them."""
+    """The values of a column, or its distribution."""
     if isinstance(entry, dict):
         if set(entry) & set(RANDOM):
             return _random(entry)
@@ -206,7 +206,7 @@ def _random(entry: Mapping[str, Any]) -> _Random:
 
 
 def _samples(tables: Mapping[str, Any], where: str, random: bool, problems: list[Problem]) -> int:
-    """How often random columns are drawn; faults of ``samples`` and ``seed`` go to the problems."""
+    """Number of draws of random columns; faults of ``samples`` and ``seed`` are added to the problems."""
     for key, least in (("samples", 1), ("seed", 0)):
         if key in tables:
             try:
@@ -219,7 +219,7 @@ def _samples(tables: Mapping[str, Any], where: str, random: bool, problems: list
         if not random and key in tables:
             problems.append(Problem(f"{where}, {key}", "stands without random columns", "leave it out"))
     samples = tables.get("samples", 1)
-    # Where it is refused the rows are still counted, with one draw.
+    # If it is refused the rows are still counted, with one draw.
     return samples if isinstance(samples, int) and samples > 0 else 1
 
 
@@ -229,7 +229,7 @@ def _product(axes: Mapping[str, FloatArray | _Random], samples: int, seed: int, 
     sizes = [len(axis) for axis in axes.values() if not isinstance(axis, _Random)]
     combinations = math.prod(sizes)
     values = scratch.array((samples * combinations, len(axes)))
-    # The last column runs fastest: how many rows each number of a column stays for.
+    # Number of successive rows with one value of a column; the last column runs fastest.
     stays = combinations
     for column, axis in enumerate(axes.values()):
         if isinstance(axis, _Random):
@@ -272,7 +272,7 @@ def _pairs(axes: Mapping[str, FloatArray | _Random], factors: tuple[str, ...], s
 
 
 def _number(value: Any) -> float:
-    # A boolean is an integer in Python, and what is not a number fails the comparison.
+    # A boolean is an integer in Python, and NaN fails the comparison.
     is_number = isinstance(value, int | float)
     if isinstance(value, bool) or not is_number or not abs(value) <= sys.float_info.max:
         raise _Refused(f"must be a finite number, got {shown(value)}", REMEDY)

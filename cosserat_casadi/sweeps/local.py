@@ -1,7 +1,7 @@
-"""A sweep on the cores of this machine: threads call compiled libraries, or drive a process each for rows in Python.
+"""A sweep on the cores of this machine: threads call compiled libraries, or one process each for rows in Python.
 
-Tasks come to such a process by standard input, results go by standard output. It ends when its input ends, so that none
-is left over when the sweep is killed.
+Such a process reads tasks from standard input and writes results to standard output. It ends with its input, so that
+none is left over after a killed sweep.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ AHEAD = 4
 
 
 class Worker:
-    """A process beside this one, for one thread at a time."""
+    """A further process, used by one thread at a time."""
 
     def __init__(self) -> None:
         # The same package as here, installed or not.
@@ -65,13 +65,13 @@ class Worker:
         return results
 
     def close(self) -> None:
-        """End the process: at once, its unfinished task is worth nothing to anyone."""
+        """End the process at once, since nobody needs its unfinished task."""
         self._process.kill()
         self._process.communicate()
 
 
 def serve(tasks: BinaryIO, results: BinaryIO) -> None:
-    """Solve what comes until nothing comes any more."""
+    """Solve tasks until the input ends."""
     while True:
         try:
             parts = pickle.load(tasks)
@@ -85,16 +85,16 @@ def main() -> None:
     """Entry point: an interrupt of the terminal is for the sweep, which ends this process."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     results = os.fdopen(os.dup(1), "wb")
-    # Whatever else prints must not get among the results.
+    # Other output must not mix with the results.
     os.dup2(2, 1)
     serve(sys.stdin.buffer, results)
 
 
 class Cores(AbstractContextManager["Cores"]):
-    """Cores of this machine, each with a chunk at a time; results come as they are ready.
+    """Cores of this machine, each with one chunk at a time; results come in the order in which they are ready.
 
     Raises:
-        SceneError: there is no core to work.
+        SceneError: the number of cores is below 1.
     """
 
     def __init__(self, count: int | None = None) -> None:
@@ -106,7 +106,7 @@ class Cores(AbstractContextManager["Cores"]):
         self._workers: list[Worker] = []
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
-        # After an error the workers go first, or the pool would wait for what they are at.
+        # After an error the workers are ended first, or the pool would wait for their tasks.
         if kind is not None:
             self._close_workers()
         self._pool.shutdown(wait=True, cancel_futures=True)

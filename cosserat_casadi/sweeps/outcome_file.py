@@ -1,4 +1,4 @@
-"""The files of a sweep: results as CSV, Parquet or a dataset, and beside them a record of the computation, as JSON.
+"""The files of a sweep: results as CSV, Parquet or a dataset, and a record of the computation as JSON.
 
 A dataset is a folder of Parquet files, which many readers take as one table.
 
@@ -29,16 +29,16 @@ FORMATS = (".csv", ".parquet", DATASET)
 """Suffixes of the results."""
 
 STABLE = "stable"
-"""The column that says whether a row is stable; empty where stability is not judged."""
+"""The column of stability; empty if stability is not judged."""
 
 TRUTHS = (WITHIN, STABLE)
-"""Columns of true and false."""
+"""Columns with true and false."""
 
 WORDS = {"true": 1.0, "false": 0.0, "": np.nan}
-"""Cells of a CSV file that are written as words, or left empty, as numbers."""
+"""Numbers for cells of a CSV file with words, or for empty cells."""
 
 BLOCK = 4096
-"""Rows that are written at once."""
+"""Number of rows that are written at once."""
 
 ROW_GROUP = 65_536
 """Rows that are written to Parquet at once: its readers skip or share out such groups of rows."""
@@ -48,7 +48,7 @@ PART_ROWS = 16 * ROW_GROUP
 
 
 _Read = tuple[list[str], npt.NDArray[np.int64], FloatArray]
-"""Columns of a file of results, its outcomes as places in LABELS, and the numbers of all other columns."""
+"""Columns of a file of results, its outcomes as indices in LABELS, and the numbers of all other columns."""
 
 
 class ParquetUnavailableError(CosseratError):
@@ -64,7 +64,7 @@ def check_output(path: Path) -> None:
     """Refuse results that could not be written.
 
     Raises:
-        SceneError: the suffix is none of FORMATS, or nothing can be written at the path.
+        SceneError: the suffix is not in FORMATS, or the path cannot be written.
         ParquetUnavailableError: it is Parquet, and pyarrow is not installed.
     """
     check_writable(path, "--output", folder=_is_dataset(path))
@@ -93,8 +93,8 @@ def read_record(path: Path) -> dict[str, Any] | None:
 
 
 def write_sweep(sweep: Sweep, path: Path) -> None:
-    """Write record and results, each whole or not at all; the same sweep gives the same bytes."""
-    # The record comes first: results without one are not ours, and are never written over.
+    """Write record and results, each atomically; equal sweeps give equal bytes."""
+    # The record is written first: results without one belong to others, and are never overwritten.
     text = json.dumps(sweep.record, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
     record = record_file(path)
     recorded_before = record.exists()
@@ -112,17 +112,17 @@ def write_sweep(sweep: Sweep, path: Path) -> None:
                 else:
                     _write_csv(sweep, temporary)
     except BaseException:
-        # A record without its results would be of no use.
+        # A record without its results would be useless.
         if not recorded_before:
             record.unlink(missing_ok=True)
         raise
 
 
 def read_sweep(path: str | Path) -> Sweep:
-    """Read results that were written, with their record where that lies beside them.
+    """Read a file of results, with its record if there is one.
 
     Raises:
-        SceneError: the file cannot be read, or is not of a sweep.
+        SceneError: the file cannot be read, or does not belong to a sweep.
     """
     file = Path(path)
     record = read_record(file)

@@ -1,4 +1,4 @@
-"""The results of a sweep: a row for each solve with its inputs, how it ended and where it led."""
+"""The results of a sweep: a row for each solve with its inputs, outcome and results."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from cosserat_casadi.result import Result
 from cosserat_casadi.sweeps.scratch import MEMORY, Scratch
 
 ENDINGS = (*OUTCOMES, Outcome.CONTACT_UNSETTLED)
-"""How rows end: as the solver in C does, or as rows in contact do, which are solved in Python."""
+"""Outcomes of rows: of the solver in C, and of rows in contact that Python solves."""
 
 ERROR, WITHIN = ERRORS
 """Columns of the estimated error, and of whether it is within the tolerance."""
@@ -32,11 +32,11 @@ class Sweep(Result):
 
     Attributes:
         swept: columns of the table.
-        found: columns of the results: iterations, residual, poses of tips and bodies, what actuators exert, errors.
-        values: numbers of both, shape (rows, len(swept) + len(found)); NaN in place of results where none was found.
-        outcomes: how each row ended, as its place in LABELS, shape (rows,).
-        record: scene, discretisation and accuracy, as plain data: the file beside the results; empty without it.
-        scratch: where values and outcomes lie.
+        found: columns of the results: iterations, residual, poses of tips and bodies, efforts of actuators, errors.
+        values: numbers of both, shape (rows, len(swept) + len(found)); results of failed rows are NaN.
+        outcomes: outcome of each row as an index in LABELS, shape (rows,).
+        record: scene, discretisation and accuracy as plain data, from the file of the record; empty without one.
+        scratch: storage of values and outcomes.
     """
 
     swept: tuple[str, ...]
@@ -53,33 +53,33 @@ class Sweep(Result):
 
     @property
     def converged(self) -> npt.NDArray[np.bool_]:
-        """Which rows hold an equilibrium, shape (rows,)."""
+        """Whether each row has an equilibrium, shape (rows,)."""
         return np.asarray(self.outcomes == 0)
 
     @property
     def outcome(self) -> list[str]:
-        """How each row ended, in words."""
+        """Outcome of each row in words."""
         return [LABELS[number] for number in self.outcomes]
 
     @property
     def counts(self) -> dict[str, int]:
-        """How many rows ended in each way."""
+        """Number of rows with each outcome."""
         counted = np.bincount(self.outcomes).tolist()
         return {LABELS[number]: count for number, count in enumerate(counted) if count}
 
     @property
     def holds(self) -> bool:
-        """Whether some row converged, and no estimate of an error is above the scene's tolerance.
+        """Whether some row converged, and no error estimate is above the scene's tolerance.
 
-        Without a record nothing says so.
+        It is false without a record.
         """
         if not self.record:
             return False
         tolerance = self.record["tolerance"]
         errors = [row["difference"] for row in self.record["checked"]]
-        # A tolerance that nobody has written asks nothing of modes that the scene fixes.
+        # A default tolerance does not apply to modes that the scene fixes.
         if self.tolerance_binds:
-            # Where the scene fixes its discretisation nothing was estimated beforehand; the rows decide.
+            # With a discretisation that the scene fixes there is no estimate beforehand; the rows decide.
             errors.append(self.record["chosen"]["error_estimate"] or 0.0)
             errors += [row["error_estimate"] for row in self.record["checked"]]
         # A row without an equilibrium in Python has no error, and so cannot be within the tolerance.
@@ -89,24 +89,24 @@ class Sweep(Result):
 
     @property
     def tolerance_binds(self) -> bool:
-        """Whether the tolerance of the record is asked for; older records do not say, and mean that it is."""
+        """Whether the tolerance of the record applies; it does for older records, which do not say."""
         return bool(self.record.get("tolerance_binds", True))
 
     @property
     def missed(self) -> npt.NDArray[np.bool_]:
-        """Which rows hold an equilibrium that is not within the tolerance, shape (rows,); none without estimates."""
+        """Whether each row has an equilibrium above the tolerance, shape (rows,); none without estimates."""
         if WITHIN not in self.found:
             return np.zeros(len(self.values), dtype=bool)
         return np.asarray(self.converged & (self[WITHIN] == 0.0))
 
     @property
     def missed_count(self) -> int:
-        """How many rows these are."""
+        """Number of rows above the tolerance."""
         return sum(int(part.missed.sum()) for _, part in self.parts())
 
     @property
     def worst(self) -> tuple[int, float, int]:
-        """How many converged rows have an estimate of their error, the largest of these, and its row; NaN of none."""
+        """Number of converged rows with error estimates, the largest estimate, and its row; NaN without any."""
         if ERROR not in self.found:
             return 0, np.nan, 0
         known, largest, row = 0, np.nan, 0
@@ -119,7 +119,7 @@ class Sweep(Result):
         return known, largest, row
 
     def parts(self) -> Iterator[tuple[int, Sweep]]:
-        """The rows in blocks, each with the number of its first row: one number for each of all takes memory."""
+        """The rows in blocks, each with the index of its first row, to save memory."""
         for rows in self.scratch.blocks(len(self.values)):
             yield rows.start, replace(self, values=self.values[rows], outcomes=self.outcomes[rows])
 
@@ -137,7 +137,7 @@ class Sweep(Result):
     @property
     def posed(self) -> list[str]:
         """Rods and bodies whose poses are among the results."""
-        # A pose is the only result with a quaternion.
+        # Only poses have quaternions among the results.
         scalar_parts = [name for name in self.found if name.endswith(".qw")]
         return [name.removesuffix(".qw") for name in scalar_parts]
 

@@ -1,4 +1,4 @@
-"""Rows solved in Python: for parameters that so few rows share that compiling would take longer."""
+"""Rows solved in Python: for parameters of so few rows that compiling would take longer."""
 
 from __future__ import annotations
 
@@ -34,14 +34,13 @@ from cosserat_casadi.tubes.tube_solve import TubeModels, solve_inputs
 
 @dataclass(frozen=True)
 class RowModel:
-    """A scene as text, its discretisation fixed; it answers rows as a compiled library does.
+    """A scene as text, with a fixed discretisation, that solves rows as a compiled library does.
 
     Attributes:
         scene: text of the scene.
         stability: whether rows end with the stability of their equilibria.
-        measure: text of the scene that eigenvalues are counted in: the scene of the sweep as it stands. Empty where
-            that is ``scene``.
-        estimate_errors: whether rows tell their estimated error.
+        measure: text of the scene that scales eigenvalues: the scene of the sweep. Empty if it equals ``scene``.
+        estimate_errors: whether rows have their estimated error.
     """
 
     scene: str
@@ -50,12 +49,12 @@ class RowModel:
     estimate_errors: bool = False
 
     def solve(self, inputs: FloatArray) -> FloatArray:
-        """Rows of results, shape (count, results), for rows of inputs, with parameters behind them if there are any."""
+        """Rows of results, shape (count, results), for rows of inputs, followed by parameters if there are any."""
         scene = _scene(self.scene)
         columns = row_results(scene, estimate_errors=self.estimate_errors, stability=self.stability)
         width = len(columns)
         rows = []
-        # Straight tubes each, with as many steps as the tolerance asks for.
+        # Each row begins with straight tubes, with the steps that the tolerance needs.
         of_tubes = (solve_inputs(_tube_models(self.scene), row) for row in inputs)
         for solution in of_tubes if scene.tubes else self._of_rods(inputs):
             judged = self._counted_in_measure(solution) if self.stability else None
@@ -67,8 +66,9 @@ class RowModel:
         model = _model(self.scene)
         near: Solution | None = None
         for row in inputs:
-            # From the unloaded scene each: what a row gives must not depend on those before. Where rods touch obstacles
-            # that takes too long, and the contacts of the row before are tried first; a chunk always has the same rows.
+            # Each row begins at the unloaded scene, so that its result does not depend on other rows. With exact
+            # contact that takes too long, and the contacts of the row before are tried first; a chunk always has the
+            # same rows.
             values, p = np.split(row, [model.inputs.size])
             solution = solve(
                 model,
@@ -77,13 +77,13 @@ class RowModel:
                 start=near,
                 estimate_error=self.estimate_errors,
             )
-            # With other parameters what rods touch may be elsewhere, and the way there through it.
+            # With other parameters obstacles may be elsewhere, and the way between the shapes may lead through them.
             if model.scene.touches_exactly and solution.converged and not p.size:
                 near = solution
             yield solution
 
     def _counted_in_measure(self, solution: Solution | TubeSolution) -> Solution | TubeSolution:
-        """This equilibrium with the unknowns that it has under the scaling of the measure."""
+        """This equilibrium with unknowns in the scaling of the measure."""
         if isinstance(solution, TubeSolution) or not self.measure or not solution.converged:
             return solution
         if solution.model.scene.touches_exactly:
@@ -93,7 +93,7 @@ class RowModel:
             return solution
         again = solve(measured, solution.inputs, start=solution.x, estimate_error=False)
         if not again.converged:
-            # Its sign is known, but not how large it is there.
+            # The sign of the eigenvalue is known, but not its size in that scaling.
             return replace(solution, smallest_eigenvalue=None)
         return again
 
@@ -101,14 +101,14 @@ class RowModel:
 def result_row(
     solution: Equilibrium[Any], width: int, judged: Equilibrium[Any] | None = None, *, estimate_errors: bool = False
 ) -> FloatArray:
-    """A solution as a row of results, shape (width,); of what did not converge nothing but how it ended.
+    """A solution as a row of results, shape (width,); one that did not converge has its outcome alone.
 
     Args:
         solution: of the row.
-        width: numbers in the row.
-        judged: the same equilibrium in the units of its smallest eigenvalue, where the row ends with its stability:
-            NaN where the loads have no potential.
-        estimate_errors: whether the row tells the estimated error; NaN where there is no estimate.
+        width: count of numbers in the row.
+        judged: this equilibrium in the units of the smallest eigenvalue, for rows with stability, which is NaN if the
+            loads have no potential.
+        estimate_errors: whether the row has the estimated error, NaN without an estimate.
     """
     row = np.full(width, np.nan)
     outcome = ENDINGS.index(solution.outcome)
@@ -127,7 +127,7 @@ def result_row(
 
 
 def _verdict(solution: Any) -> tuple[float | None, ...]:
-    """Stability in the columns that a row ends with; None where it has no meaning."""
+    """Stability for the last columns of a row; None if it is not defined."""
     if isinstance(solution, TubeSolution):
         return solution.stability.falling, solution.stability.determinant, solution.stable
     return solution.smallest_eigenvalue, solution.stable
@@ -155,9 +155,9 @@ def solved_poses(solution: Any) -> FloatArray:
 
 
 def _contact_numbers(solution: Solution, name: str, obstacle: str, *, of_body: bool) -> list[float]:
-    """Number of the contacts of a rod or a body with an obstacle, and their resultant.
+    """Number of contacts of a rod or a body with an obstacle, and their resultant.
 
-    Of a rod between the two where the contacts begin and end, NaN without any.
+    For a rod the start and end of the contacts stand between the two, NaN without any.
     """
     wanted = (name, obstacle, of_body)
     contacts = [own for own in solution.contacts if (own.owner, own.obstacle, own.of_body) == wanted]
@@ -168,7 +168,7 @@ def _contact_numbers(solution: Solution, name: str, obstacle: str, *, of_body: b
 
 
 def _in_units_of(measure: Scene, solution: Solution) -> Solution:
-    """An equilibrium in contact with the eigenvalue that it has under the scaling of another scene."""
+    """An equilibrium in contact with its eigenvalue in the scaling of another scene."""
     unknown = replace(solution, smallest_eigenvalue=None)
     placed = equilibrium_in(solution)
     touched = with_contacts(measure, placed.state, placed.placed.modes)
@@ -183,12 +183,12 @@ def _in_units_of(measure: Scene, solution: Solution) -> Solution:
 
 @lru_cache(maxsize=2)
 def _measured(scene: str, measure: str) -> Model | None:
-    """The model of a scene under the scaling of another, both as texts; None where :func:`_scaled` gives none."""
+    """The model of a scene in the scaling of another, both as texts; None if :func:`_scaled` returns None."""
     return _scaled(parse_scene(scene), _model(measure))
 
 
 def _scaled(scene: Scene, scaling: Model) -> Model | None:
-    """The model of a scene under the scaling of a model; None where its loads or its places do not allow that."""
+    """The model of a scene in the scaling of a model; None if its loads or element ends do not allow it."""
     if any(len(element_ends(scene, rod.name)) != len(element_ends(scaling.scene, rod.name)) for rod in scene.rods):
         return None
     discrete = with_numbers(scaling.discrete, scene)

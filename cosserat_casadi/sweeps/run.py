@@ -1,4 +1,4 @@
-"""A sweep from end to end: table ↦ scenes ↦ one discretisation ↦ chunks ↦ results, checked and written."""
+"""A sweep from start to end: table ↦ scenes ↦ one discretisation ↦ chunks ↦ results, checked and written."""
 
 from __future__ import annotations
 
@@ -56,29 +56,29 @@ from cosserat_casadi.sweeps.work import (
 )
 
 IN_LANES_FROM = 1_250_000
-"""Rows of one scene from which on they are solved side by side: fewer save less time than a compiler takes for it. For
+"""Least rows of one scene that are solved side by side: fewer save less time than their compilation takes. For
 a wire with 12 unknowns gcc takes 4.0 s longer, and a row takes 3.4 µs less (``benchmarks/row_cost.py``)."""
 
 LET_GO = 64
 """Chunks whose inputs or results are in memory at once."""
 
 SAMPLES = 12
-"""Rows that the discretisation is chosen on, unless said otherwise."""
+"""Default number of rows on which the discretisation is chosen."""
 
 
 @dataclass(frozen=True)
 class Plan:
-    """A sweep whose every input is sound; nothing has been computed or written.
+    """A sweep with valid inputs, before anything is computed or written.
 
     Attributes:
-        scene: as it was given.
-        table: its rows.
+        scene: the given scene.
+        table: the rows of the sweep.
         variants: the scenes and inputs of the rows.
         output: file of the results, if one is wanted.
-        samples: rows that the discretisation is chosen on.
+        samples: number of rows on which the discretisation is chosen.
         stability: whether each row says whether its equilibrium is stable.
         estimate_errors: whether each row says how large its error is, and whether it is within the tolerance.
-        device: solves compiled rows, one of :func:`device_problems`; None for the cores.
+        device: device for compiled rows, see :func:`device_problems`; None for the cores.
     """
 
     scene: Scene
@@ -92,13 +92,14 @@ class Plan:
 
     @property
     def identity(self) -> str:
-        """Identity of the sweep: the same identity gives the same results."""
+        """Identity of the sweep: equal identities give equal results."""
         words = [
             version("cosserat-casadi"),
             scene_text(self.scene),
             self.table.columns,
             self.samples,
-            # They say which rows are solved in C: the same to the tolerance, but not to the last digit.
+            # They decide which rows are solved in C, whose results are equal to the tolerance, but not to the last
+            # digit.
             [COMPILED_FROM, COMPILED_ROWS, IN_CONTACT_FROM, MODELLED_ROWS],
             self.stability,
             self.table.factors,
@@ -106,27 +107,27 @@ class Plan:
             *([] if self.device is None else [self.device]),
         ]
         digest = hashlib.sha256(json.dumps(words).encode())
-        # Block by block: the bytes of all would be a copy of the table.
+        # Block by block, since the bytes of all would be a copy of the table.
         for block in self.scratch.blocks(len(self.table.values)):
             digest.update(np.ascontiguousarray(self.table.values[block], dtype="<f8").data)
         return digest.hexdigest()
 
     @property
     def scratch(self) -> Scratch:
-        """Where arrays with an entry for each row lie."""
+        """Storage of arrays with an entry for each row."""
         return self.table.scratch
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Columns of numbers that the results will have."""
-        # What is given and found alike, such as a tension, is in the table already; of a slack cable its length.
-        # The outcome, which comes first, is no number.
+        """Columns of numbers of the results."""
+        # A quantity that is both given and a result, such as a tension, is in the table already; for a slack cable its
+        # length. The outcome, which comes first, is not a number.
         results = [name for name in self.results[1:] if name not in self.table.columns]
         return (*self.table.columns, *results)
 
     @property
     def results(self) -> tuple[str, ...]:
-        """Names of the numbers that a row is answered with."""
+        """Names of the numbers in the results of a row."""
         return row_results(self.scene, estimate_errors=self.estimate_errors, stability=self.stability)
 
     @property
@@ -145,7 +146,7 @@ class Plan:
 
     @property
     def finished(self) -> bool:
-        """Whether the file of results is there already, and of this sweep."""
+        """Whether the file of results exists already and belongs to this sweep."""
         if self.output is None or not self.output.exists():
             return False
         record = read_record(self.output)
@@ -162,13 +163,13 @@ def plan_sweep(
     estimate_errors: bool = True,
     device: str | None = None,
 ) -> Plan:
-    """A sweep of a scene, as :func:`sweep` takes it, refused before anything is computed where it could not be done.
+    """The plan of a sweep with the arguments of :func:`sweep`; faults are refused before anything is computed.
 
     Raises:
         SceneError: with every fault of scene, table and output.
         ExportError: there is no compiler or no GPU, or two things of the scene would have one name in C.
     """
-    # What differs from row to row is what the table says.
+    # Rows differ in the columns of the table alone.
     scene = scene.baked()
     rods = {rod.name for rod in scene.rods}
     problems = [
@@ -191,9 +192,9 @@ def plan_sweep(
     problems += output_problems(output, plan)
     if problems or plan is None:
         raise SceneError(*problems)
-    # Rows in exact contact, and those of tubes, are solved in Python where C does not.
+    # Rows in exact contact, and rows of tubes, are solved in Python if C does not solve them.
     if not scene.touches_exactly and not scene.tubes:
-        # Both raise where a library could not be generated or compiled.
+        # Both raise if a library could not be generated or compiled.
         scene_names(NAME, scene)
         find_compiler()
     return plan
@@ -215,21 +216,20 @@ def sweep(
     """Solve a scene for every row of a table of inputs and parameters.
 
     Args:
-        subject: a validated scene; or a model of rods, whose modes and nodes are kept.
+        subject: a validated scene, or a model of rods, of which modes and nodes are kept.
         table: arrays by column, such as ``{"push.force.x": [0.0, 0.1]}``; a CSV file with a header; or a grid in TOML.
-        output: file to write, ``.csv`` or ``.parquet``, or folder of Parquet files, ``.dataset``, with a record of what
-            was computed beside it. What a killed or interrupted run of the same sweep has done is not done again.
+        output: file to write, ``.csv`` or ``.parquet``, or folder of Parquet files, ``.dataset``, with a record of the
+            computation beside it. Finished rows of a killed or interrupted run of this sweep are not computed again.
         scheduler: address of a dask.distributed scheduler; by default the cores of this machine work.
-        cores: how many cores work, at least 1; all by default.
-        samples: rows that the discretisation is chosen on.
-        stability: whether each row says whether its equilibrium is stable: the columns ``smallest_eigenvalue``, in
-            units of EI/ℓ of the scene as it stands, and ``stable``, 1 or 0; NaN where the loads of a row have no
-            potential.
-        estimate_errors: whether each row says how large its error is: the columns ``error_estimate``, 1 where it is
-            not known, and ``within_tolerance``, 1 or 0; NaN where the scene fixes its modes and asks for no tolerance.
-        device: ``cuda`` for a GPU, which is experimental and was never run on one, or ``host``, for the same source on
-            a processor; the cores by default.
-        progress: told the work under way, how much of it is done, and of how much.
+        cores: number of working cores, at least 1; all by default.
+        samples: number of rows on which the discretisation is chosen.
+        stability: whether each row has its stability: the columns ``smallest_eigenvalue``, in units of EI/ℓ of the
+            given scene, and ``stable``, 1 or 0; NaN if the loads of a row have no potential.
+        estimate_errors: whether each row has its error: the columns ``error_estimate``, 1 for an unknown error, and
+            ``within_tolerance``, 1 or 0; NaN if the scene fixes its modes and has no given tolerance.
+        device: ``cuda`` for a GPU, which is experimental and was never run on one, or ``host`` for this source on a
+            processor; the cores by default.
+        progress: receives the work under way, its finished part, and its total.
 
     Raises:
         SceneError: with every fault of table and output.
@@ -258,20 +258,20 @@ def run_sweep(
     cores: int | None = None,
     progress: StageProgress | None = None,
 ) -> Sweep:
-    """Do the work of a plan, or the rest of it; of a finished one, read the results.
+    """Do the work of a plan, or the rest of it; if it is finished, read the results.
 
     Args:
-        plan: of :func:`plan_sweep`.
+        plan: plan by :func:`plan_sweep`.
         scheduler: as in :func:`sweep`.
         cores: as there.
         progress: as there.
     """
     if plan.finished and plan.output is not None and plan.part is not None:
-        # A kill between the last two steps of the run before leaves it.
+        # It is left over if a run was killed between its last two steps.
         plan.part.unlink(missing_ok=True)
         return read_sweep(plan.output)
     progress = progress or not_told
-    # A cluster that does not answer is told of before the discretisation is chosen.
+    # A cluster that does not answer is reported before the discretisation is chosen.
     with _machine(scheduler, cores, plan.device) as machine:
         work = plan.work
         if plan.output is None or plan.part is None:
@@ -296,19 +296,19 @@ def run_shard(
     cores: int | None = None,
     progress: StageProgress | None = None,
 ) -> int:
-    """Do the rest of one shard of a sweep, and keep it beside the file of the results; returns its rows.
+    """Do the rest of one shard of a sweep, store it beside the file of results, and return its number of rows.
 
-    Where the file of the results has the whole sweep already nothing is done.
+    If the file of results already has the whole sweep nothing is done.
 
     Args:
-        plan: of :func:`plan_sweep`, with an output.
-        shard: which part.
+        plan: plan by :func:`plan_sweep`, with an output.
+        shard: the part of the sweep.
         scheduler: as in :func:`sweep`.
         cores: as there.
         progress: as there.
 
     Raises:
-        SceneError: the file of the shard is of another sweep.
+        SceneError: the file of the shard belongs to another sweep.
     """
     assert plan.output is not None, "a shard is kept in a file"
     work = [chunk for chunk in plan.work if shard.has(chunk)]
@@ -327,7 +327,7 @@ def run_shard(
 
 
 def _choice_of_others(plan: Plan, shard: Shard) -> Choice | None:
-    """The discretisation that another shard of this sweep has chosen; None where none has begun."""
+    """The discretisation that another shard of this sweep has chosen; None if none has begun."""
     assert plan.output is not None
     for other, file in shard_files(plan.output).items():
         head = Store(file).head()
@@ -340,16 +340,16 @@ def merge_shards(plan: Plan, *, progress: StageProgress | None = None) -> Sweep:
     """Write the results of a sweep from its shards, and remove these.
 
     Args:
-        plan: of :func:`plan_sweep`, with an output.
+        plan: plan by :func:`plan_sweep`, with an output.
         progress: as in :func:`sweep`.
 
     Raises:
-        SceneError: shards are missing or not done, of another sweep, or of different discretisations.
+        SceneError: shards are missing, not finished, of another sweep, or of different discretisations.
     """
     assert plan.output is not None, "shards lie beside their output"
     files = shard_files(plan.output)
     if plan.finished:
-        # A kill between the last two steps of the merge before leaves some.
+        # Some are left over if a merge was killed between its last two steps.
         for file in files.values():
             head = Store(file).head()
             if head is not None and head["sweep"] == plan.identity:
@@ -379,15 +379,15 @@ def merge_shards(plan: Plan, *, progress: StageProgress | None = None) -> Sweep:
 
 
 def _results_of(done: Mapping[Path, set[int]], rows: Mapping[int, int], width: int) -> Iterator[tuple[int, FloatArray]]:
-    """The chunks of shards with their results, one file open at a time: there may be thousands.
+    """The chunks of shards with their results; one file is open at a time, since there may be thousands.
 
     Args:
-        done: numbers of the chunks that each file held when all were looked at.
-        rows: of each chunk, by its number.
-        width: numbers that a row is answered with.
+        done: indices of the chunks in each file when all were checked.
+        rows: rows of each chunk, by its index.
+        width: count of numbers in the results of a row.
 
     Raises:
-        StoreChangedError: a file does not hold them any more.
+        StoreChangedError: a file does not have them any more.
     """
     for file, numbers in done.items():
         with Store(file) as store:
@@ -402,10 +402,10 @@ def _known(heads: Mapping[Shard, dict[str, Any] | None]) -> list[dict[str, Any]]
 
 
 def _check_shards(plan: Plan, work: Sequence[Chunk], heads: Mapping[Shard, dict[str, Any] | None]) -> None:
-    """Refuse shards that are no whole sweep.
+    """Refuse shards that do not make a whole sweep.
 
     Raises:
-        SceneError: with every reason.
+        SceneError: the shards are refused; it lists every reason.
     """
     if not heads:
         remedy = "run the sweep with --shard 1/4 to 4/4, say, and the same --output"
@@ -446,7 +446,7 @@ def _machine(scheduler: str | None, cores: int | None, device: str | None) -> Co
 def _begun(
     plan: Plan, work: Sequence[Chunk], store: Store, progress: StageProgress, choice: Choice | None = None
 ) -> Choice:
-    """Ready a store for more results; return its discretisation: a new sweep's is ``choice``, or is chosen now."""
+    """Prepare a store for results and return its discretisation, for a new sweep ``choice`` or one chosen now."""
     head = store.head()
     if head is not None:
         store.resume(*_sizes(plan, work))
@@ -458,14 +458,14 @@ def _begun(
 
 
 def _sizes(plan: Plan, work: Sequence[Chunk]) -> tuple[dict[int, int], int]:
-    """Rows of each chunk, by its number, and numbers that a row is answered with."""
+    """Rows of each chunk, by its index, and count of numbers in the results of a row."""
     return {chunk.number: len(chunk.rows) for chunk in work}, len(plan.results)
 
 
 def _choice(plan: Plan, progress: StageProgress) -> Choice:
     """The discretisation of all rows."""
     if plan.scene.tubes:
-        # Each row of tubes has as many steps as its own tolerance asks for.
+        # Each row of tubes has the steps that its own tolerance needs.
         return Choice(None)
     return choose(plan.variants, plan.table, plan.samples, progress)
 
@@ -475,10 +475,10 @@ class _Run:
     """A sweep on its discretisation.
 
     Attributes:
-        plan: of the sweep.
-        work: its chunks, or those of a shard.
+        plan: plan of the sweep.
+        work: its chunks, or the chunks of a shard.
         choice: the discretisation of all rows.
-        progress: told the work under way.
+        progress: receives the work under way.
     """
 
     plan: Plan
@@ -487,26 +487,26 @@ class _Run:
     progress: StageProgress
 
     def solve_rest(self, machine: Cores | Cluster, store: Store | Memory) -> None:
-        """Solve every chunk that is not done, and keep it."""
+        """Solve and store every unfinished chunk."""
         rest = [chunk for chunk in self.work if chunk.number not in store.done]
         total = sum(len(chunk.rows) for chunk in self.work)
         count = total - sum(len(chunk.rows) for chunk in rest)
         for chunk, results in machine.run(self._tasks(rest)):
             store.add(chunk.number, results)
             if chunk.number % LET_GO == 0:
-                # Inputs were read for it.
+                # Its inputs have been read into memory.
                 self.plan.scratch.let_go()
             count += len(results)
             self.progress("Sweeping", count, total)
 
     def _tasks(self, rest: Sequence[Chunk]) -> Iterator[tuple[Chunk, list[Part]]]:
-        """Chunks with what solves them; sources are generated when their first chunk comes."""
+        """Chunks with their solvers; sources are generated for the first chunk that needs them."""
         answer: Answer | None = None
         answer_of: int | None = None
         given = self.plan.variants.given
         for chunk in rest:
             if not chunk.compiled and not chunk.in_contact:
-                # A model in Python for each variant that the chunk has rows of.
+                # A model in Python for each variant with rows in the chunk.
                 yield chunk, [(self._in_python(variant), given(rows)) for variant, rows in chunk.pieces]
                 continue
             # A compiled chunk has rows of one variant.
@@ -518,9 +518,9 @@ class _Run:
             yield chunk, [(answer, given(rows))]
 
     def _compiled(self, variant: int) -> Answer:
-        """The library of a variant, beside Python in exact contact, and where rows may stall before smooth contact.
+        """The library of a variant, with Python for rows in exact contact or rows that may stall in smooth contact.
 
-        Python alone in exact contact where C does not know what the scene has.
+        It is Python alone in exact contact that C does not support.
         """
         plan = self.plan
         entry = plan.variants.entries[variant]
@@ -548,14 +548,14 @@ class _Run:
         if not in_contact and not has_barriers(entry.scene):
             return library
         if isinstance(library, RowLibrary):
-            # Once, before many processes look for it.
+            # Compiled once, before many processes need it.
             library.compiled()
         return LibraryWithPython(library, self._in_python(variant), in_contact)
 
     def _in_python(self, variant: int) -> RowModel:
         """A variant in Python."""
         plan = self.plan
-        # Text, since models of CasADi do not travel to other processes.
+        # As text, since models of CasADi cannot be sent to other processes.
         measure = scene_text(self.choice.scene(plan.variants.nominal)) if plan.stability else ""
         scene = self.choice.scene(plan.variants.entries[variant].scene)
         return RowModel(scene_text(scene), plan.stability, measure, plan.estimate_errors)
@@ -564,7 +564,7 @@ class _Run:
         """All results in the order of the table, some results checked.
 
         Args:
-            answered: for each chunk its number and its results, in any order.
+            answered: index and results of each chunk, in any order.
         """
         plan = self.plan
         swept = len(plan.table.columns)
@@ -572,7 +572,7 @@ class _Run:
         values, outcomes = self._gathered(answered)
         judged = None
         if plan.stability and not plan.scene.tubes:
-            # Chunks that are solved in Python have been judged there.
+            # Chunks that Python solves are judged there.
             in_c = {variant for chunk in self.work if chunk.compiled or chunk.in_contact for variant, _ in chunk.pieces}
             judged = plan.variants.with_potential(in_c, scratch)
         estimate, verdict = (plan.columns.index(name) for name in ERRORS) if plan.estimate_errors else (None, None)
@@ -581,33 +581,33 @@ class _Run:
             if judged is not None:
                 values[block, -len(STABILITY) :][~judged[block]] = np.nan
             if verdict is not None:
-                # 1 or 0 as of a solution; NaN where that is not known or has no meaning.
+                # 1 or 0 for a solution; NaN if it is unknown or not defined.
                 errors = values[block, estimate]
                 within = np.where(np.isnan(errors), np.nan, errors <= plan.scene.accuracy.tolerance)
                 within[outcomes[block] != 0] = 0.0
                 values[block, verdict] = within if plan.scene.accuracy.binds else np.nan
         checked = []
-        # Rows of tubes are within tolerance each, or do not converge.
+        # Each row of tubes is within its tolerance, or does not converge.
         if not plan.scene.tubes:
             posed = len(plan.scene.rods) + len(plan.scene.bodies)
-            # The outcome, first of a row of results, has no column of numbers; poses cannot be swept.
+            # The outcome, first in a row of results, has no column of numbers; poses cannot be swept.
             first = swept + len(JUDGED) - 1
             poses = values[:, first : first + posed * len(POSE)]
             checked = check(plan.variants, self.choice, outcomes, poses, scratch, self.progress)
         sweep = Sweep(plan.table.columns, plan.columns[swept:], values, outcomes, {}, scratch)
-        # The record counts the outcomes of the sweep that it belongs to.
+        # The record counts the outcomes of its sweep.
         sweep.record.update(_record(plan, self.choice, sweep, checked))
         return sweep
 
     def _gathered(self, answered: Iterable[tuple[int, FloatArray]]) -> tuple[FloatArray, npt.NDArray[np.int64]]:
-        """Results of all rows behind the columns of the table, which are left empty, and how the rows ended."""
+        """Results of all rows after the columns of the table, which are left empty, and the outcomes of the rows."""
         plan = self.plan
         swept = len(plan.table.columns)
         result_columns = [plan.results.index(name) for name in plan.columns[swept:]]
         count = len(plan.table.values)
         values = plan.scratch.array((count, len(plan.columns)))
         outcomes = plan.scratch.array((count,), np.int64)
-        # Chunks have every row once; each is let go as soon as it has its place, since rows may be millions.
+        # Chunks have every row once; each is released as soon as it is copied, since there may be millions of rows.
         chunk_of = {chunk.number: chunk for chunk in self.work}
         for number, results in answered:
             rows = chunk_of[number].rows
@@ -619,7 +619,7 @@ class _Run:
 
 
 def _units(scene: Scene, columns: Sequence[str]) -> dict[str, str]:
-    """Units of the columns that set inputs; a number without unit has "1"."""
+    """Units of the columns that set inputs; "1" for a dimensionless number."""
     units: dict[str, str] = {}
     for entry in scene.free_inputs():
         of_entry = [column for column in columns if column == entry.name or column.startswith(f"{entry.name}.")]
@@ -653,7 +653,7 @@ def _record(plan: Plan, choice: Choice, sweep: Sweep, checked: list[dict[str, An
 
 
 def output_problems(output: Path | None, plan: Plan | None) -> list[Problem]:
-    """Why the results cannot be written where they are wanted."""
+    """Problems of an output to which the results cannot be written."""
     if output is None:
         return []
     try:
@@ -662,11 +662,11 @@ def output_problems(output: Path | None, plan: Plan | None) -> list[Problem]:
         return list(error.problems)
     if plan is None or plan.part is None:
         return []
-    # Files of other sweeps that the results would be written over.
+    # Files of other sweeps that the results would overwrite.
     problems = []
     part, identity = plan.part, plan.identity
     head = Store(part).head() or {}
-    # A file without content is what a kill before the first line leaves.
+    # A run that was killed before its first line leaves an empty file.
     unfinished = part.exists() and (not part.is_file() or part.stat().st_size > 0)
     if unfinished and head.get("sweep") != identity:
         problem = f"{part} is of another sweep, which was not finished, or has been changed"

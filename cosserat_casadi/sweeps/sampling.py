@@ -1,4 +1,4 @@
-"""Which rows of a table stand for all its rows: the rows nearest to its corners, and some at random."""
+"""Representative rows of a table: the rows nearest to its corners, and some random rows."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ SEED = 20
 """Seed of the draw of random rows: the same table gives the same sample."""
 
 MOST_CORNERS = 3
-"""Columns up to which every corner of the box of a table is looked for."""
+"""Most columns for which every corner of the box of a table is searched."""
 
 
 def representative_rows(values: FloatArray, count: int, scratch: Scratch = MEMORY) -> list[int]:
-    """Rows that a discretisation is chosen on, ascending.
+    """Indices of the rows on which a discretisation is chosen, ascending.
 
     Args:
         values: values of the table, shape (rows, columns).
-        count: rows wanted; two thirds may be corners, the rest are drawn at random.
-        scratch: where the values lie.
+        count: number of rows; two thirds may be corners, the rest are drawn at random.
+        scratch: storage of the values.
     """
     rng = np.random.default_rng(SEED)
     low, high = column_ends(values, scratch)
-    # Columns that vary, each over its range.
+    # Varying columns, each over its range.
     varies = np.flatnonzero(high > low)
     columns = len(varies)
     if columns <= MOST_CORNERS:
@@ -38,10 +38,10 @@ def representative_rows(values: FloatArray, count: int, scratch: Scratch = MEMOR
     most_corners = max(1, 2 * count // 3)
     directions = np.zeros((len(corners[:most_corners]), values.shape[1]))
     directions[:, varies] = corners[:most_corners]
-    # Nearest to a corner is what lies farthest in its direction.
+    # The row that is farthest in the direction of a corner is nearest to it.
     chosen = set(farthest_rows(values, directions, low, high - low, scratch))
     missing = min(max(0, count - len(chosen)), len(values))
-    # A permutation of all rows would have a number for each.
+    # A permutation of all rows would need memory for each row.
     chosen.update(rng.choice(len(values), missing, replace=False).tolist())
     return sorted(chosen)
 
@@ -59,14 +59,14 @@ def column_ends(values: FloatArray, scratch: Scratch) -> tuple[FloatArray, Float
 def farthest_rows(
     values: FloatArray, directions: FloatArray, origin: FloatArray, units: FloatArray, scratch: Scratch
 ) -> list[int]:
-    """The row that lies farthest in each direction, the first one of several.
+    """Index of the row that is farthest in each direction, the first one of several.
 
     Args:
         values: shape (rows, columns).
         directions: shape (k, columns).
-        origin: values that columns count from, shape (columns,).
-        units: units of the columns, shape (columns,); a column of unit 0 is one that does not vary.
-        scratch: where the values lie.
+        origin: origin of the columns, shape (columns,).
+        units: units of the columns, shape (columns,); a column that does not vary has unit 0.
+        scratch: storage of the values.
     """
     lengths = np.where(units > 0.0, units, 1.0)
     farthest = np.full(len(directions), -np.inf)
@@ -83,7 +83,7 @@ def farthest_rows(
 
 
 def from_neighbour_to_neighbour(values: FloatArray) -> npt.NDArray[np.int64]:
-    """An order of few rows in which each is followed by the nearest row that is left; the first stays first.
+    """An order of a few rows, beginning with the first, in which the nearest remaining row follows each.
 
     Args:
         values: shape (rows, columns).

@@ -1,8 +1,7 @@
-"""Arrays with an entry for each row of a table, on disc: the memory of a sweep does not grow with its rows.
+"""Arrays with an entry for each row of a table, on disc, so that the memory of a sweep does not grow with its rows.
 
-An array lies in a file without a name, which goes with it. Its pages come into memory as they are used; who goes
-through the rows in blocks lets the pages of each block go. A sweep that no file is wanted of keeps its arrays in
-memory.
+An array is in an unnamed file, which is deleted with it. Its pages are loaded as they are used; loops over blocks of
+rows release the pages of each block. A sweep without an output file keeps its arrays in memory.
 """
 
 from __future__ import annotations
@@ -21,19 +20,19 @@ import numpy.typing as npt
 from cosserat_casadi.files import write_errors
 
 BLOCK = 16_384
-"""Rows that are gone through at once."""
+"""Number of rows of a block."""
 
 ZEROS = bytes(1 << 16)
-"""Zeros that claim the room of a file."""
+"""Zeros that allocate the space of a file."""
 
 Array = npt.NDArray[Any]
 
 
 class Scratch:
-    """Where the arrays of a sweep lie.
+    """Storage of the arrays of a sweep.
 
     Attributes:
-        folder: of their files; None where they are kept in memory.
+        folder: folder of their files; None for arrays in memory.
     """
 
     def __init__(self, folder: Path | None = None) -> None:
@@ -42,7 +41,7 @@ class Scratch:
 
     @classmethod
     def beside(cls, output: Path | None) -> Scratch:
-        """Scratch of a sweep whose results go to a file; in memory without one, or where no file can be made."""
+        """Storage of a sweep beside its output file; in memory without one, or if no file can be made there."""
         folder = None if output is None else output.absolute().parent
         if folder is None or not folder.is_dir() or not os.access(folder, os.W_OK | os.X_OK):
             return cls()
@@ -52,13 +51,13 @@ class Scratch:
         """A new array of zeros.
 
         Raises:
-            WriteError: the disc has no room for it.
+            WriteError: the disc has no space for it.
         """
         size = math.prod(shape) * np.dtype(dtype).itemsize
         if self.folder is None or not size:
             return np.zeros(shape, dtype)
         with write_errors(self.folder), tempfile.TemporaryFile(dir=self.folder) as file:
-            # Claimed now: a disc that is full when a page is written would end the process.
+            # Allocated now, since a full disc at the writing of a page would end the process.
             for first in range(0, size, len(ZEROS)):
                 file.write(ZEROS[: size - first])
             return self._mapped(file, size, dtype).reshape(shape)
@@ -67,7 +66,7 @@ class Scratch:
         """Blocks of rows of numbers, one after the other, as one array, shape (rows, columns).
 
         Raises:
-            WriteError: the disc has no room for it.
+            WriteError: the disc has no space for it.
         """
         if self.folder is None:
             return np.concatenate([np.zeros((0, columns)), *blocks])
@@ -80,14 +79,14 @@ class Scratch:
             return self._mapped(file, size, np.float64).reshape(-1, columns)
 
     def blocks(self, count: int) -> Iterator[slice]:
-        """Rows in blocks; each block leaves the memory when the next one is asked for."""
+        """Rows in blocks; each block is released from memory before the next one."""
         for first in range(0, count, BLOCK):
             yield slice(first, min(first + BLOCK, count))
             self.let_go()
 
     def let_go(self) -> None:
-        """Let all pages leave the memory of this process; their numbers stay on disc."""
-        # Where the system has no such advice it takes pages when memory is short.
+        """Release all pages from the memory of this process; their numbers stay on disc."""
+        # A system without this advice takes pages when memory is short.
         if hasattr(mmap, "MADV_DONTNEED"):
             for mapped in self._maps:
                 mapped.madvise(mmap.MADV_DONTNEED)
@@ -99,7 +98,7 @@ class Scratch:
         return np.frombuffer(mapped, dtype)
 
     def __reduce__(self) -> tuple[type[Scratch], tuple[Path | None]]:
-        # Another process has the numbers of arrays that are sent to it, and none of their files.
+        # Another process gets the numbers of arrays that are sent to it, not their files.
         return Scratch, (self.folder,)
 
 

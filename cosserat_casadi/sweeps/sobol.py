@@ -1,10 +1,10 @@
-"""Sobol indices: which share of the variance of a result each random column of a sweep accounts for.
+"""Sobol indices: the share of the variance of a result for which each random column of a sweep accounts.
 
-The first-order index of a column is the share that it accounts for by itself; the total index is the share that would
-stay if all other columns were known, interactions included. Two independent draws A and B are solved, and A with one
-column of B after the other. First order: A. Saltelli et al., Computer Physics Communications 181, 2010, 259-270, table
-2, (b); total: M. J. W. Jansen, Computer Physics Communications 117, 1999, 35-43. Intervals are percentiles of
-bootstrap estimates, which draw the samples anew.
+The first-order index of a column is its share without interactions; the total index is the variance that would remain
+if all other columns were known. Two independent draws A and B are solved, and A with one column of B after the other.
+First order: A. Saltelli et al., Computer Physics Communications 181, 2010, 259-270, table 2, (b); total: M. J. W.
+Jansen, Computer Physics Communications 117, 1999, 35-43. Intervals are percentiles of bootstrap estimates, which draw
+the samples anew.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ from cosserat_casadi.result import Result
 from cosserat_casadi.sweeps.outcome_table import Sweep
 
 CONFIDENCE = 0.95
-"""Share of bootstrap estimates within the intervals."""
+"""Share of the bootstrap estimates within an interval."""
 
 RESAMPLES = 1000
-"""Bootstrap estimates."""
+"""Number of bootstrap estimates."""
 
 AT_ONCE = 50
-"""Bootstrap estimates that are made together: their weights take memory."""
+"""Number of bootstrap estimates that are computed together: their weights take memory."""
 
 SEED = 21
 """Seed of the bootstrap: the same sweep gives the same intervals."""
 
 CONSTANT = 1e-9
-"""Standard deviation below this share of the largest value says that a result is constant but for rounding."""
+"""Standard deviation over the largest value below which a result is constant to rounding."""
 
 
 @dataclass(frozen=True)
@@ -43,8 +43,8 @@ class Estimates:
     Attributes:
         mean: mean of the result.
         variance: variance of the result.
-        first: first-order index of each column, shape (columns,); NaN where the result does not vary.
-        total: total index of each column, shape (columns,); NaN where the result does not vary.
+        first: first-order index of each column, shape (columns,); NaN for a constant result.
+        total: total index of each column, shape (columns,); NaN for a constant result.
         first_interval: bounds of the first-order indices, shape (columns, 2).
         total_interval: bounds of the total indices, shape (columns, 2).
     """
@@ -64,8 +64,8 @@ class SobolIndices(Result):
     Attributes:
         factors: the random columns.
         results: estimates by column of the results.
-        samples: draws that they were estimated on.
-        left_out: draws of which some row has no equilibrium; what the indices say leaves them out.
+        samples: number of draws for the estimates.
+        left_out: number of draws with a row without equilibrium, which the indices leave out.
     """
 
     factors: tuple[str, ...]
@@ -75,7 +75,7 @@ class SobolIndices(Result):
 
 
 def sobol_indices(sweep: Sweep) -> SobolIndices:
-    """Sobol indices of positions and of what actuators exert, from a sweep over :func:`sobol_table`.
+    """Sobol indices of positions and efforts of actuators, from a sweep over :func:`sobol_table`.
 
     Raises:
         SceneError: the rows of the sweep were not drawn for it, or fewer than two draws have equilibria throughout.
@@ -98,24 +98,24 @@ def sobol_indices(sweep: Sweep) -> SobolIndices:
     results = {}
     for name in columns:
         own = values[name]
-        # A rod that stays in a plane is moved out of it by rounding alone.
+        # Only rounding moves a planar rod out of its plane.
         largest = max(positions) if name[-2:] in POSITION else np.abs(own).max()
         results[name] = estimates(own[0], own[1], own[2:], CONSTANT * float(largest))
     return SobolIndices(factors, results, len(whole), draws - len(whole))
 
 
 POSITION = (".x", ".y", ".z")
-"""How columns of positions end."""
+"""Ends of the names of columns with positions."""
 
 UNVARIED = (".qw", ".qx", ".qy", ".qz")
-"""How columns end that have no indices: of a unit quaternion no entry means anything alone."""
+"""Ends of the names of columns without indices: an entry of a unit quaternion has no meaning alone."""
 
 
 def varied_results(sweep: Sweep) -> list[str]:
-    """Columns of results that have indices: positions, what actuators exert, the smallest eigenvalue."""
+    """Columns of results with indices: positions, efforts of actuators, the smallest eigenvalue."""
     judged = ("iterations", "residual", *ERRORS, "stable")
     kept = [name for name in sweep.found if name not in judged and not name.endswith(UNVARIED)]
-    # Where stability is not judged there is no number.
+    # Without a judgement of stability there is no number.
     return [name for name in kept if np.isfinite(sweep[name][sweep.converged]).all()]
 
 
@@ -147,7 +147,7 @@ def estimates(first_draw: FloatArray, second_draw: FloatArray, mixed: FloatArray
     firsts = []
     totals = []
     for _ in range(0, RESAMPLES, AT_ONCE):
-        # How often each sample is drawn is all that its means need.
+        # Means need only the number of times that each sample is drawn.
         drawn = rng.integers(samples, size=(AT_ONCE, samples))
         weights = np.array([np.bincount(numbers, minlength=samples) for numbers in drawn]) / samples
         again = _indices(weights @ terms.T, columns)

@@ -1,7 +1,7 @@
-"""Finished rows of a sweep: on disc a file that only grows, so that a kill loses no more than its last entry.
+"""Finished rows of a sweep, on disc in a file that only grows, so that a killed sweep loses only the last entry.
 
-The results of chunks lie there alone until all are done: memory does not grow with them. A sweep that no file is wanted
-of keeps them in memory.
+The results of chunks are only there until all are finished, so that memory does not grow with them. A sweep without an
+output file keeps them in memory.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ CHECKSUM = "checksum"
 """Key of the checksum of the first line."""
 
 ENTRY = struct.Struct("<qqI")
-"""Number of a chunk, bytes of its results, their checksum."""
+"""Index of a chunk, bytes of its results, their checksum."""
 
 
 class StoreChangedError(CosseratError):
-    """The rows that a sweep has kept on disc were changed by others while it ran."""
+    """Another program has changed the stored rows of a sweep while it ran."""
 
     page = "sweeps"
 
@@ -40,22 +40,22 @@ class StoreChangedError(CosseratError):
 
 
 class Memory:
-    """The results of a sweep that no file is wanted of."""
+    """The results of a sweep without an output file."""
 
     def __init__(self) -> None:
         self._results: dict[int, FloatArray] = {}
 
     @property
     def done(self) -> Collection[int]:
-        """Numbers of the chunks that are done."""
+        """Indices of the finished chunks."""
         return self._results.keys()
 
     def add(self, number: int, results: FloatArray) -> None:
-        """Keep the results of a chunk."""
+        """Store the results of a chunk."""
         self._results[number] = results
 
     def results(self) -> Iterator[tuple[int, FloatArray]]:
-        """Every chunk with its results, which are let go: rows may be millions."""
+        """Every chunk with its results, which are released, since there may be millions of rows."""
         while self._results:
             yield self._results.popitem()
 
@@ -63,8 +63,8 @@ class Memory:
 class Store(AbstractContextManager["Store"]):
     """The unfinished results of one sweep.
 
-    The first line says what sweep it is, in JSON with a checksum; every chunk follows with its number and a checksum.
-    An entry that was being written when the process was killed is cut off.
+    The first line identifies the sweep, in JSON with a checksum; every chunk follows with its index and a checksum. An
+    incomplete entry of a killed process is cut off.
     """
 
     def __init__(self, path: Path) -> None:
@@ -75,12 +75,12 @@ class Store(AbstractContextManager["Store"]):
 
     @property
     def done(self) -> Collection[int]:
-        """Numbers of the chunks that are done."""
+        """Indices of the finished chunks."""
         return self._places.keys()
 
     def head(self) -> dict[str, Any] | None:
-        """Identity of the sweep that the file is of; None without a file, or where it is damaged."""
-        # Opening a pipe would wait for who writes into it.
+        """Identity of the sweep that the file belongs to; None without a file, or for a damaged one."""
+        # Opening a pipe would wait for its writer.
         if not self.path.is_file():
             return None
         try:
@@ -93,7 +93,7 @@ class Store(AbstractContextManager["Store"]):
         return head
 
     def start(self, head: Mapping[str, Any]) -> None:
-        """Begin a sweep, over whatever the file held.
+        """Begin a sweep, overwriting the file.
 
         Raises:
             WriteError: it cannot be written; nothing is left of it.
@@ -109,23 +109,23 @@ class Store(AbstractContextManager["Store"]):
                 raise
 
     def resume(self, rows: Mapping[int, int], width: int) -> None:
-        """Find the finished rows; the file is ready for more.
+        """Read the finished rows and prepare the file for further rows.
 
         Args:
-            rows: of each chunk of the sweep, by its number.
-            width: numbers that a row is answered with.
+            rows: rows of each chunk of the sweep, by its index.
+            width: count of numbers in the results of a row.
         """
         with self.path.open("rb") as file:
             end = len(file.readline())
             for number, content in _entries(file, {chunk: 8 * width * count for chunk, count in rows.items()}):
                 self._places[number] = (end, rows[number], len(content))
                 end += ENTRY.size + len(content)
-        # What was being written when the process was killed is cut off.
+        # An incomplete entry of a killed process is cut off.
         self._file = self.path.open("r+b", buffering=0)
         self._file.truncate(end)
 
     def add(self, number: int, results: FloatArray) -> None:
-        """Keep the results of a chunk.
+        """Store the results of a chunk.
 
         Raises:
             WriteError: it cannot be written; the rows that were kept before stay.
@@ -140,10 +140,10 @@ class Store(AbstractContextManager["Store"]):
         self._places[number] = (end, len(results), len(content))
 
     def results(self) -> Iterator[tuple[int, FloatArray]]:
-        """Every chunk that is done with its results, one at a time.
+        """Every finished chunk with its results, one at a time.
 
         Raises:
-            StoreChangedError: the file does not hold the kept rows any more.
+            StoreChangedError: the file does not have the stored rows any more.
         """
         if self._file is None:
             raise ValueError("the store is not open")
@@ -174,11 +174,11 @@ def _checksum(head: Mapping[str, Any]) -> int:
 
 
 def _entries(file: BinaryIO, sizes: Mapping[int, int]) -> Iterator[tuple[int, bytes]]:
-    """Whole entries; what follows a damaged one, or one that the sweep does not have, is not trusted.
+    """Complete entries, up to the first one that is damaged or does not belong to the sweep.
 
     Args:
-        file: behind its first line.
-        sizes: bytes of the results of each chunk, by its number.
+        file: the file, positioned after its first line.
+        sizes: bytes of the results of each chunk, by its index.
     """
     while len(header := file.read(ENTRY.size)) == ENTRY.size:
         number, size, checksum = ENTRY.unpack(header)

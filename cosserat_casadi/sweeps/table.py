@@ -26,10 +26,10 @@ class Table:
     Attributes:
         columns: names such as ``push.force.x`` or ``wire.section.radius``.
         values: shape (rows, columns), SI units.
-        where: what a refusal calls it.
-        lines: the line of each row in the file, shape (rows,); without one rows are counted from 1.
-        factors: columns whose Sobol indices the rows are drawn for; see :func:`sobol_table`.
-        scratch: where arrays with an entry for each row lie.
+        where: name of the table in refusals.
+        lines: the line of each row in the file, shape (rows,); without a file rows are counted from 1.
+        factors: columns for whose Sobol indices the rows are drawn; see :func:`sobol_table`.
+        scratch: storage of arrays with an entry for each row.
     """
 
     columns: tuple[str, ...]
@@ -52,7 +52,7 @@ def read_table(path: Path, *, sobol: bool = False, scratch: Scratch = MEMORY) ->
     Args:
         path: the file.
         sobol: whether the random columns of a grid are drawn for their Sobol indices.
-        scratch: where the rows are to lie.
+        scratch: storage for the rows.
 
     Raises:
         SceneError: with every fault.
@@ -69,7 +69,7 @@ def read_table(path: Path, *, sobol: bool = False, scratch: Scratch = MEMORY) ->
         raise SceneError(Problem(str(path), "holds rows of its own; for Sobol indices they are drawn", remedy))
     header, rows = begun_rows(path)
     problems = [Problem(str(path), f"has the column {column} twice") for column in repeated(header)]
-    # A column of lines in front.
+    # The first column has the lines.
     numbers = scratch.joined(_blocks(path, header, rows, problems), 1 + len(header))
     refuse(shortened(problems, str(path)))
     return Table(tuple(header), numbers[:, 1:], str(path), numbers[:, 0], scratch=scratch)
@@ -80,7 +80,7 @@ def range_table(ranges: Sequence[str], scratch: Scratch = MEMORY) -> Table:
 
     Args:
         ranges: at least one.
-        scratch: where the rows are to lie.
+        scratch: storage for the rows.
 
     Raises:
         SceneError: with every fault.
@@ -98,13 +98,13 @@ def range_table(ranges: Sequence[str], scratch: Scratch = MEMORY) -> Table:
 
 
 def asked_table(over: Path | None, ranges: Sequence[str], *, sobol: bool = False, scratch: Scratch = MEMORY) -> Table:
-    """The rows of a file, of ranges, or every row of the file beside every row of the ranges.
+    """The rows of a file, of ranges, or every row of the file combined with every row of the ranges.
 
     Args:
         over: the file; None stands for ranges alone.
-        ranges: texts as of :func:`range_table`, at least one without a file.
+        ranges: texts as for :func:`range_table`, at least one without a file.
         sobol: whether the file is a grid with random columns, whose rows are drawn for Sobol indices.
-        scratch: where the rows are to lie.
+        scratch: storage for the rows.
 
     Raises:
         SceneError: with every fault of both.
@@ -124,14 +124,14 @@ def asked_table(over: Path | None, ranges: Sequence[str], *, sobol: bool = False
 
 
 def crossed(table: Table, ranges: Table) -> Table:
-    """Every row of a table beside every row of ranges, which run fastest.
+    """Every row of a table combined with every row of ranges, which run fastest.
 
     Args:
         table: rows of a file.
         ranges: a grid of other columns, in memory.
 
     Raises:
-        SceneError: a column stands in both, there are too many rows, or the rows were drawn for Sobol indices.
+        SceneError: both have a column, there are too many rows, or the rows were drawn for Sobol indices.
         WriteError: the disc has no room for the rows.
     """
     problems = [
@@ -172,14 +172,14 @@ def table_of(columns: Mapping[str, npt.ArrayLike], scratch: Scratch = MEMORY) ->
 
     Args:
         columns: the arrays.
-        scratch: where the rows are to lie.
+        scratch: storage for the rows.
 
     Raises:
         SceneError: there is no row, lengths differ, or a value is not a finite number.
     """
     arrays = {name: _column(name, values) for name, values in columns.items()}
     lengths = {len(array) for array in arrays.values() if array.ndim == 1}
-    # Numbers alone are a table of one row.
+    # A table of single numbers has one row.
     lengths = lengths or {1}
     problems = []
     for name, array in arrays.items():
@@ -210,8 +210,8 @@ def sobol_table(columns: Mapping[str, Any], samples: int, seed: int = 0) -> Tabl
     Args:
         columns: for each random column ``{"uniform": [low, high]}`` or ``{"normal": [mean, deviation]}``; a number for
             each that keeps its value.
-        samples: draws, at least 2; the intervals narrow with the root of it.
-        seed: of the draws.
+        samples: number of draws, at least 2; the intervals narrow with its square root.
+        seed: seed of the draws.
 
     Raises:
         SceneError: with every fault.

@@ -1,7 +1,7 @@
 """Columns of a table as parts of a scene: inputs at run time, or parameters.
 
-A column that may be an input is made one, whatever the scene's own ``inputs`` say, and all else is baked in: a load or
-a cable, the length of a rod, its base. Other columns are what ``--set`` takes, such as ``wire.section.radius``. In a
+A column that may be an input becomes one, regardless of the scene's ``inputs``, and all else is constant: a load or
+a cable, the length of a rod, its base. Other columns are keys as for ``--set``, such as ``wire.section.radius``. In a
 table of many rows the columns that may be parameters of a model are arguments of one compiled library. Other columns
 make another scene for each set of values, which rows of equal values share.
 """
@@ -40,7 +40,7 @@ NOT_PARAMETERS = ("schema", "title", "inputs", "accuracy", "targets", "bounds", 
 """Tables of a scene that do not change the computed results."""
 
 STIFFNESS = ("material", "section", "stiffness", "linear_density")
-"""Tables and numbers of a rod that say how it yields, not where it is."""
+"""Tables and numbers of a rod that change its elasticity or mass, not its pose."""
 
 
 @dataclass(frozen=True)
@@ -48,8 +48,8 @@ class Variant:
     """Rows of one scene.
 
     Attributes:
-        scene: the scene, its inputs the swept inputs, and its parameters the arguments of its library.
-        rows: their numbers in the table, shape (k,).
+        scene: the scene, with the swept inputs as inputs and the arguments of its library as parameters.
+        rows: indices of its rows in the table, shape (k,).
     """
 
     scene: Scene
@@ -58,16 +58,16 @@ class Variant:
 
 @dataclass(frozen=True)
 class Variants:
-    """A table seen by a scene.
+    """The rows of a table as scenes, inputs and parameters.
 
     Attributes:
-        nominal: the scene as it stands, its inputs the swept inputs.
-        entries: scenes, in the order in which the table meets them.
+        nominal: the given scene, with the swept inputs as inputs.
+        entries: scenes, in the order of their first rows.
         inputs: stacked inputs of every row of the table, shape (rows, size).
-        layout: of the inputs.
-        parameters: columns that are no inputs.
-        arguments: those among them that libraries take as parameters.
-        p: their values in every row of the table, shape (rows, arguments).
+        layout: layout of the inputs.
+        parameters: columns that are not inputs.
+        arguments: columns among these that libraries take as parameters.
+        p: values of the arguments in every row of the table, shape (rows, arguments).
     """
 
     nominal: Scene
@@ -79,8 +79,8 @@ class Variants:
     p: FloatArray
 
     def scene_of_row(self, row: int) -> Scene:
-        """The scene of a row, whose numbers are all constants."""
-        # One scene has all rows: to look for one among them would take memory for each.
+        """The scene of a row, with constants as all its numbers."""
+        # A single scene has all rows, which need no search.
         holders = self.entries if len(self.entries) == 1 else [e for e in self.entries if row in e.rows]
         scene = holders[0].scene
         if not self.arguments:
@@ -88,7 +88,7 @@ class Variants:
         return _overridden(scene_tables(scene.baked()), self.arguments, self.p[row], scene.input_names())
 
     def given(self, rows: npt.NDArray[np.int64]) -> FloatArray:
-        """Arguments of a library for rows: inputs, and parameters behind them."""
+        """Arguments of a library for rows: inputs followed by parameters."""
         return np.hstack([self.inputs[rows], self.p[rows]])
 
     def inputs_of_row(self, row: int) -> dict[str, FloatArray]:
@@ -96,14 +96,13 @@ class Variants:
         return self.layout.unpack(self.inputs[row])
 
     def with_potential(self, chosen: Iterable[int], scratch: Scratch) -> npt.NDArray[np.bool_]:
-        """Which rows have loads with a potential, so that the stability of an equilibrium has a meaning, shape (rows,).
+        """Whether the loads of each row have a potential, so that stability is defined, shape (rows,).
 
-        This depends on which inputs and parameters are zero, and on nothing else: one row of each pattern of zeros is
-        asked about.
+        This depends only on which inputs and parameters are zero: one row of each pattern of zeros is tested.
 
         Args:
-            chosen: numbers of the scenes whose rows are asked about; rows of others count as having one.
-            scratch: where the result is to lie.
+            chosen: indices of the scenes with rows to test; rows of other scenes count as having a potential.
+            scratch: storage for the result.
         """
         judged: npt.NDArray[np.bool_] = scratch.array((len(self.inputs),), np.bool_)
         judged[:] = True
@@ -118,7 +117,7 @@ class Variants:
                 for pattern, row in zip(patterns, rows[first].tolist(), strict=True):
                     if pattern.tobytes() not in verdicts:
                         scene = self.scene_of_row(row)
-                        # The coarsest model: loads are the same on each.
+                        # The coarsest model serves, since all models have these loads.
                         coarsest = build(scene, discretise(scene, 1, 2))
                         verdicts[pattern.tobytes()] = coarsest.has_potential(self.inputs[row])
                 of_patterns = np.array([verdicts[pattern.tobytes()] for pattern in patterns])
@@ -127,7 +126,7 @@ class Variants:
 
 
 def variants_of(scene: Scene, table: Table) -> Variants:
-    """The scenes and inputs that a table asks for.
+    """The scenes and inputs of the rows of a table.
 
     Raises:
         SceneError: with every fault: a column that is neither input nor parameter, a value that makes no sense.
@@ -168,7 +167,7 @@ def variants_of(scene: Scene, table: Table) -> Variants:
 
 
 def _named_whole(table: Table, layout: InputLayout, index_of: Mapping[str, int]) -> Iterator[Problem]:
-    """Columns with the name of an input of several numbers, which would be refused in every row."""
+    """Faults of columns with the name of an input of several numbers, which every row would refuse."""
     for name in layout.names:
         if name in table.columns and name not in index_of:
             entries = [column for column in index_of if column.startswith(f"{name}.")]
@@ -179,9 +178,9 @@ def _named_whole(table: Table, layout: InputLayout, index_of: Mapping[str, int])
 def _overridden(
     tables: Mapping[str, Any], names: Sequence[str], values: FloatArray, inputs: Sequence[str] | None = None
 ) -> Scene:
-    """The scene with other numbers, and with these inputs unless they are left out.
+    """The scene with other numbers, and with these inputs if given.
 
-    A number is named as ``--set`` names it, or as ``parameters`` does, such as ``wire.intrinsic.curvature.y``.
+    A number has its name for ``--set``, or for ``parameters``, such as ``wire.intrinsic.curvature.y``.
     """
     overrides = []
     numbers = {}
@@ -198,7 +197,7 @@ def _overridden(
 
 
 def _is_named_as_parameter(tables: Mapping[str, Any], name: str) -> bool:
-    """Whether a number has the name of a parameter, and none that ``--set`` takes."""
+    """Whether a name is valid for a parameter, but not for ``--set``."""
     try:
         override_path(tables, name)
     except SceneError:
@@ -207,7 +206,7 @@ def _is_named_as_parameter(tables: Mapping[str, Any], name: str) -> bool:
 
 
 def _refused_rows(scene: Scene, table: Table, names: Sequence[str], values: FloatArray) -> Iterable[Problem]:
-    """Faults of the rows that are refused first, if any is, for these values of some columns."""
+    """Faults of the rows that would be refused first, for these values of some columns."""
     tables = scene_tables(scene.baked())
     joints_move = any(_moves_joints(tables, name) for name in names)
     found: dict[str, Problem] = {}
@@ -223,15 +222,15 @@ def _refused_rows(scene: Scene, table: Table, names: Sequence[str], values: Floa
 
 
 def _with_swept_inputs(scene: Scene, columns: Sequence[str]) -> Scene:
-    """The scene with the inputs that columns name, and no other; tubes have all."""
+    """The scene with the inputs that columns name, and no others; tubes have all inputs."""
     if scene.tubes:
         return scene
     tables = scene_tables(scene)
-    # Targets and bounds may name inputs that are none in a sweep.
+    # Targets and bounds may name inputs that are constants in a sweep.
     tables.pop("targets", None)
     tables.pop("bounds", None)
     possible = [f"{record.name}.{field}" for record in (*scene.input_owners, *scene.rods) for field in record.inputs]
-    # A column adds an axis and a degree to the name of its input: ``push.force.x.1`` is of ``push.force``.
+    # A column adds an axis and a degree to the name of its input: ``push.force.x.1`` belongs to ``push.force``.
     named = [[name for name in possible if f"{column}.".startswith(f"{name}.")] for column in columns]
     names = dict.fromkeys(max(of_column, key=len) for of_column in named if of_column)
     inputs = [name for name in names if _may_be_input(tables, name)]
@@ -248,16 +247,16 @@ def _may_be_input(tables: Mapping[str, Any], name: str) -> bool:
 
 
 def _set_twice(scene: Scene, names: Sequence[str], table: Table) -> Iterator[Problem]:
-    """Names of inputs and parameters that set one thing: one name would count for nothing."""
+    """Faults of names of inputs and parameters that set one number: one of them would have no effect."""
     tables = scene_tables(scene)
     paths: dict[str, tuple[str | int, ...]] = {}
     for name in names:
-        # What is not there to be set is told with the row that would set it.
+        # A missing key is reported with the row that would set it.
         with suppress(SceneError):
-            # A tangent is one more way to give the orientation.
+            # A tangent is another notation of the orientation.
             paths[name] = override_path(tables, name.replace(".base.tangent", ".base.quaternion"))
     for (first, first_path), (second, second_path) in combinations(paths.items(), 2):
-        # One path within the other: setting the shorter sets the longer too.
+        # If one path is within the other, setting the shorter one sets the longer one too.
         shared = min(len(first_path), len(second_path))
         if first_path[:shared] == second_path[:shared]:
             remedy = "name what is swept in one way: push.force.x, wire.section.radius"
@@ -270,7 +269,7 @@ def _entries(
     parameter_columns: Sequence[int],
     problems: list[Problem],
 ) -> Iterator[Variant]:
-    """The variants of a table; faults go to the problems."""
+    """The variants of a table; faults are added to the problems."""
     if not parameter_columns:
         with collect_problems(problems):
             check_constraints(scene)
@@ -300,14 +299,14 @@ def _scenes(
     parameter_columns: Sequence[int],
     problems: list[Problem],
 ) -> Iterator[Variant]:
-    """A scene for each set of parameters; a fault is told once, with the first row that has it."""
+    """A scene for each set of parameters; a fault is reported once, with its first row."""
     columns = [table.columns[k] for k in parameter_columns]
     joints_move = any(_moves_joints(tables, column) for column in columns)
     found: dict[str, Problem] = {}
     for values, rows in _groups(table.values[:, list(parameter_columns)]):
         try:
             variant = Variant(_overridden(tables, columns, values), rows)
-            # Building a model would find it too, but in a worker; it takes as long as that.
+            # Building a model would find it too, but only in a worker, and the test takes as long as that.
             if joints_move or rows[0] == 0:
                 check_constraints(variant.scene)
             yield variant

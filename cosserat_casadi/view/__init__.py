@@ -1,1 +1,1 @@
-"""A scene in a browser on this machine: the page with a server behind it that solves, finds inputs and moves."""
+"""A scene in a browser on this machine: a page and its server, which solves, finds inputs and computes motions."""

@@ -1,4 +1,4 @@
-"""Session of a scene whose contacts are exact: equilibria are solved anew for every move, in Python."""
+"""Session of a scene with exact contact: every move is a new solve in Python."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ from cosserat_casadi.view.robot_session import RobotSession, accuracy_of, state_
 
 
 class ContactSession(RobotSession):
-    """A robot that touches obstacles and is moved from a browser.
+    """A robot with exact contacts, moved from a browser.
 
-    The contacts are unknowns, which the compiled library does not look for: :func:`cosserat_casadi.solve` does, from
-    the contacts of the last equilibrium.
+    The compiled library does not search for contacts: :func:`cosserat_casadi.solve` does, from the contacts of the last
+    equilibrium.
     """
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        # As the scene's file has it: contacts come and go, and their forces are no inputs.
+        # The model of the scene without contacts: contacts change, and contact forces are not inputs.
         self.model = build(without_contacts(self.first.model.scene), self.first.model.discretisation)
 
     def facts(self) -> dict[str, Any]:
-        """Facts of the scene for its page, which offers only the questions that this session answers."""
+        """Facts of the scene for its page, with the questions that this session answers."""
         began = time.perf_counter()
         self.move(self.model.pack().tolist())
         seconds = time.perf_counter() - began
@@ -47,19 +47,19 @@ class ContactSession(RobotSession):
         return {**page_facts(self.first, self.model, self.asked), **offered, "note": note}
 
     def reset(self, inputs: Sequence[float | None]) -> dict[str, Any]:
-        """The equilibrium for these inputs from the one at the scene's own inputs, whatever was before."""
+        """The equilibrium for these inputs, starting from the equilibrium at the inputs of the scene."""
         self._present = self.first
         return self.move(inputs)
 
     def eigenvalues(self) -> list[float] | None:
-        """The smallest eigenvalue of the second variation, contacts held; None where stability has no meaning."""
+        """The smallest eigenvalue of the second variation with contacts fixed; None if stability is undefined."""
         smallest = self._present.smallest_eigenvalue
         if smallest is None or not self._present.converged:
             return None
         return [smallest]
 
     def accuracy(self) -> dict[str, Any]:
-        """The estimated error of the present equilibrium, whose contacts are no inputs of the model."""
+        """The estimated error of the present equilibrium."""
         if not self._present.converged:
             return accuracy_of(None)
         given = self._present.model.inputs.split(self._present.inputs)
@@ -67,10 +67,10 @@ class ContactSession(RobotSession):
         return accuracy_of(solve(self.model, values, start=self._present))
 
     def _followed(self, given: FloatArray) -> None:
-        """Do nothing: no way is followed, since a solve begins at the last equilibrium."""
+        """None: inputs are not followed continuously, since a solve starts from the last equilibrium."""
 
     def _solved(self, given: FloatArray) -> Solution:
-        """The equilibrium for inputs, looked for from the contacts of the last equilibrium."""
+        """The equilibrium for inputs, starting from the contacts of the last equilibrium."""
         before: Solution = self._last
         if np.all(np.isfinite(given)):
             return solve(self.model, given, start=before, estimate_error=False)
@@ -84,7 +84,7 @@ class ContactSession(RobotSession):
 
 
 def _drawn_contact(solution: Solution, contact: Contact) -> dict[str, Any]:
-    """Points of a rod or a ball at which it touches, the resultant on it, world axes, m and N; and where, in words."""
+    """Contact points of a rod or a ball, m, and the resultant on it, N, in world axes; and the place in words."""
     points = touching_points(solution, contact, ALONG_LINE)
     place = f" at X = {contact.start:.3g}"
     if contact.of_body:

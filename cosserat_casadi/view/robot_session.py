@@ -1,6 +1,6 @@
-"""A session of a page in the browser: moves, the error, inputs that bring a tip to a point.
+"""Sessions of a page in the browser: moves, error estimates, and inputs for a wanted tip position.
 
-Data that go to and from a page are inputs as it sends them, and equilibria as it draws them.
+The page sends inputs, and receives equilibria as drawn parts.
 """
 
 from __future__ import annotations
@@ -30,19 +30,19 @@ SAME = 1e-5
 ELSEWHERE = "These inputs have an equilibrium at the point, and lead the robot to another one."
 
 OF_EVERY_SESSION = frozenset({"move", "reset", "derivatives", "eigenvalues", "accuracy"})
-"""Questions that every session answers."""
+"""Questions answered by every session."""
 
 
 @dataclass
 class RobotSession(ABC):
-    """A robot that is moved from a browser: the equilibrium it is in, and what can be asked about it.
+    """A robot moved from a browser: its present equilibrium, and the questions about it.
 
     Attributes:
-        first: the equilibrium at the scene's own inputs.
-        asked: ranges of the sliders; by default the ranges that modes are chosen for.
-        model: the model that is moved.
-        questions: names of the questions that it answers, each by the method of that name.
-        searched: the search for the inputs of a point.
+        first: the equilibrium at the inputs of the scene.
+        asked: ranges of the sliders; by default those of the choice of modes.
+        model: the model for moves.
+        questions: names of the answered questions, which are the names of their methods.
+        searched: the inverse problem for a wanted position.
     """
 
     first: Any
@@ -59,18 +59,18 @@ class RobotSession(ABC):
 
     @property
     def pose_names(self) -> dict[str, list[str]]:
-        """Names of what can be led to a point, by kind."""
+        """Names of rods and bodies with target positions, by kind."""
         return {"rod": list(self.model.lengths), "body": [body.name for body in self.model.scene.bodies]}
 
     @abstractmethod
     def facts(self) -> dict[str, Any]:
-        """Facts of the scene for its page, which offers only the questions that this session answers."""
+        """Facts of the scene for its page, with the questions that this session answers."""
 
     def move(self, inputs: Sequence[float | None]) -> dict[str, Any]:
-        """The equilibrium for these inputs: along the way from the last one, or anew where that leads nowhere.
+        """The equilibrium for these inputs: by continuation from the last one, or by a new solve if that fails.
 
         Raises:
-            SceneError: of tubes, an input is no number, or out of its range.
+            SceneError: an input of tubes is not a number or out of range.
         """
         given = self._read(inputs)
         found = self._followed(given)
@@ -79,38 +79,38 @@ class RobotSession(ABC):
         return self._accepted(given, self._solved(given), anew=found is not None)
 
     def reset(self, inputs: Sequence[float | None]) -> dict[str, Any]:
-        """The equilibrium for these inputs from where a solve begins, whatever was before; raises as :meth:`move`."""
+        """The equilibrium for these inputs by a solve from its default start; errors of :meth:`move`."""
         given = self._read(inputs)
         return self._accepted(given, self._solved(given), anew=False)
 
     def derivatives(self) -> list[float] | None:
-        """Derivatives of all tips and bodies by all inputs, [pose][input][7]; None where there are none."""
+        """Derivatives of all tip and body poses by all inputs, [pose][input][7]; None if undefined."""
         return None
 
     def eigenvalues(self) -> list[float] | None:
-        """Eigenvalues of the second variation, ascending; None where they are not what stability is judged by."""
+        """Eigenvalues of the second variation, ascending; None if they do not decide stability."""
         return None
 
     def accuracy(self) -> dict[str, Any]:
-        """The estimated error of the present equilibrium, as :func:`accuracy_of` tells it."""
+        """The estimated error of the present equilibrium, in the form of :func:`accuracy_of`."""
         if not self._present.converged:
             return accuracy_of(None)
         return accuracy_of(solve(self.model, self._present.inputs, start=self._present.x))
 
     def reach(self, pose: Mapping[str, str], position: Sequence[float]) -> dict[str, Any]:
-        """Inputs that bring a tip or a body to a point, as ``inverse`` finds them from where the robot is.
+        """Inputs that move a tip or a body to a point, by ``inverse`` from the present equilibrium.
 
         Args:
-            pose: {"rod": name} of a tip, of a rod or a tube; or {"body": name}.
-            position: world axes, m.
+            pose: {"rod": name} for the tip of a rod or tube, or {"body": name}.
+            position: target position, world axes, m.
 
         Returns:
-            the equilibrium as :meth:`move` gives it, with the inputs and a sentence on whether the point is met.
+            the equilibrium as from :meth:`move`, with the inputs, and a sentence on whether the target is met.
         """
         target = scenes.PositionTarget(kind="position", position=tuple(position), **pose)
         key = tuple(pose.items())
         if key not in self._problems:
-            # Other points are other parameters of the same problem.
+            # The target position is a parameter of the same problem.
             changes = {"targets": (target,), "bounds": self._bounds()}
             self._problems[key] = self._lifted(self.model.scene.model_copy(update=changes))
         problem = self._problems[key]
@@ -120,7 +120,7 @@ class RobotSession(ABC):
         return {**self._reached(found), "inputs": found.solution.inputs.tolist()}
 
     def _bounds(self) -> tuple[scenes.Bound, ...]:
-        """The scene's bounds, or else the ends of the sliders that a hand may move."""
+        """Bounds of the scene, or else the ranges of the movable sliders."""
         bounds: tuple[scenes.Bound, ...] = self.model.scene.bounds
         if bounds:
             return bounds
@@ -134,26 +134,26 @@ class RobotSession(ABC):
         )
 
     def _read(self, inputs: Sequence[float | None]) -> FloatArray:
-        """Stacked inputs as the page sends them."""
+        """Stacked inputs from the page."""
         return stacked_inputs(inputs)
 
     @property
     def _last(self) -> Any:
-        """The present equilibrium; the first one where there is none."""
+        """The present equilibrium, or the first one if there is none."""
         present = self._present
         return present if present.converged else self.first
 
     @abstractmethod
     def _followed(self, given: FloatArray) -> Any:
-        """The end of the way to these inputs; None where none is followed, as without an equilibrium to begin at."""
+        """The result of continuation to these inputs; None without continuation, e.g. without a start equilibrium."""
 
     @abstractmethod
     def _solved(self, given: FloatArray) -> Any:
-        """The end of a solve without a way."""
+        """The result of a solve without continuation."""
 
     @abstractmethod
     def _accepted(self, given: FloatArray, found: Any, *, anew: bool) -> dict[str, Any]:
-        """The end of a solve for the page, which becomes the present equilibrium."""
+        """The result of a solve in the form for the page; it becomes the present result."""
 
     def _sliders(self) -> list[Slider]:
         return sliders(self.model, self.asked)
@@ -164,11 +164,11 @@ class RobotSession(ABC):
         return lifted_problem(asked, scene.targets, self.first, stable=False)
 
     def _reached(self, found: Inverse) -> dict[str, Any]:
-        """The robot led to the inputs that a search found, and whether it is at the point then."""
+        """The robot moved to the inputs found by a search, and whether it meets the target there."""
         moved = self.move(found.solution.inputs.tolist())
         if not self._present.converged:
             return {**moved, "met": False}
-        # The inputs are right for the equilibrium that was found: the way there may lead to another one.
+        # Continuation to these inputs may lead to another equilibrium than the one found by the search.
         led_there = np.allclose(self._present.x, found.solution.x, rtol=0, atol=SAME)
         if found.met and not led_there:
             return {**moved, "text": ELSEWHERE, "met": False}
@@ -176,17 +176,17 @@ class RobotSession(ABC):
 
 
 def stacked_inputs(inputs: Sequence[float | None]) -> FloatArray:
-    """Stacked inputs; NaN for null, which JSON has in place of a number."""
+    """Stacked inputs; NaN for null."""
     return np.array([np.nan if value is None else value for value in inputs], dtype=np.float64)
 
 
 def state_of(found: Equilibrium[Any] | CompiledSolution, drawn: FloatArray, *, anew: bool) -> dict[str, Any]:
-    """The end of a solve for a page.
+    """The result of a solve for a page.
 
     Args:
-        found: how the solve ended, in Python or in C.
+        found: outcome of the solve, in Python or in C.
         drawn: drawn parts of the equilibrium, shape (k,).
-        anew: whether it was solved from the unloaded scene, because the last equilibrium led nowhere.
+        anew: whether it was solved from the unloaded scene after a failed continuation.
     """
     return {
         "found": found.converged,
@@ -200,10 +200,10 @@ def state_of(found: Equilibrium[Any] | CompiledSolution, drawn: FloatArray, *, a
 
 
 def accuracy_of(solution: Equilibrium[Any] | None) -> dict[str, Any]:
-    """The estimated error of an equilibrium for a page: in words, and whether it is within the tolerance.
+    """The estimated error of an equilibrium for a page, as text, and whether it is within the tolerance.
 
     Args:
-        solution: with its estimates; None where there is no equilibrium.
+        solution: equilibrium with error estimates; None without an equilibrium.
     """
     if solution is None or solution.within_tolerance is None:
         return {"within": None, "text": "", "refines": False}

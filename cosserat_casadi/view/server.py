@@ -1,7 +1,7 @@
-"""The page of a session, served on this machine alone; the browser asks, the session answers.
+"""Server of the page of a session, on this machine only; it passes questions of the browser to the session.
 
-Other users of the machine reach its ports too: the address holds a secret that they do not know. Whatever bytes the
-browser sends, the outcome is a question or a refusal.
+Since other users of the machine can connect to its ports, the address holds a secret. Any bytes of a request give a
+question or a refusal.
 """
 
 from __future__ import annotations
@@ -35,25 +35,25 @@ HOST = "127.0.0.1"
 """Address of the server, which no other machine reaches."""
 
 LARGEST_QUESTION = 1_000_000
-"""Bytes beyond which a question does not come from our page."""
+"""Largest size of a question, bytes."""
 
 CONNECTIONS = 32
-"""Connections that are served at once; a browser has six to one server."""
+"""Largest number of simultaneous connections; a browser opens six per server."""
 
 PATIENCE = 30.0
-"""Time in which a request must have arrived, and an answer been taken, s; a connection may be silent as long."""
+"""Time limit for receiving a request, for sending an answer, and for an idle connection, s."""
 
 SECRET_BYTES = 16
-"""Random bytes in a secret: more than can be tried."""
+"""Number of random bytes in a secret."""
 
 SCRIPTS = ("server_robot.js", "playback.js")
 
 
 def check_port(port: int) -> None:
-    """Refuse a port of this machine that cannot be taken, before any work is done for it.
+    """Refuse a port that cannot be opened, before any other work.
 
     Raises:
-        SceneError: another program has it, or it needs rights that this one has not.
+        SceneError: the port is in use by another program, or needs further rights.
     """
     try:
         HTTPServer((HOST, port), BaseHTTPRequestHandler).server_close()
@@ -64,12 +64,12 @@ def check_port(port: int) -> None:
 
 @dataclass
 class Desk:
-    """The questions that a browser may ask, and the page that asks them.
+    """The page of a session, and answers to its questions.
 
     Attributes:
-        session: who answers.
+        session: session that answers.
         page: the page.
-        policy: what the page may do, as the header Content-Security-Policy says it.
+        policy: value of the header Content-Security-Policy.
     """
 
     session: RobotSession
@@ -85,14 +85,14 @@ class Desk:
         self.policy = _policy(text)
 
     def answer(self, name: str, question: Question) -> Any:
-        """The answer to a question; a refusal is an answer with the sentence ``refused``.
+        """The answer to a question; a refusal is an answer with its sentence in ``refused``.
 
         Args:
-            name: of the question.
-            question: what stands in it.
+            name: name of the question.
+            question: parts of the question.
 
         Raises:
-            QuestionError: there is no such question, or something it needs is missing or wrong.
+            QuestionError: the question is unknown, or a part is missing or wrong.
         """
         session = self.session
         if name not in session.questions:
@@ -102,7 +102,7 @@ class Desk:
             given = [question.all_inputs(session.model.inputs.size)]
         elif name == "reach":
             given = [*question.point(session.pose_names)]
-        # A motion and other modes may take a minute, in which the robot can be moved: they have models of their own.
+        # Motions and refined equilibria may take a minute: they run without the lock, on separate models.
         at_once = name not in ("motion", "refined")
         with self._lock if at_once else nullcontext():
             return _refusable(getattr(session, name), *given)
@@ -116,7 +116,7 @@ def _refusable(method: Callable[..., Any], *given: Any) -> Any:
 
 
 def _policy(page: str) -> str:
-    """Policy of the page: it runs its own scripts and styles, and asks this server alone."""
+    """Policy of the page: only its scripts and styles, and connections only to this server."""
     scripts = " ".join(map(_digest, re.findall(r"<script>(.*?)</script>", page, re.DOTALL)))
     styles = " ".join(map(_digest, re.findall(r"<style>(.*?)</style>", page, re.DOTALL)))
     rules = (
@@ -133,7 +133,7 @@ def _policy(page: str) -> str:
 
 
 def _digest(text: str) -> str:
-    """A text as a policy names it."""
+    """Hash of a text, in the form of a policy."""
     digest = hashlib.sha256(text.encode()).digest()
     return f"'sha256-{base64.b64encode(digest).decode()}'"
 
@@ -142,7 +142,7 @@ class RobotServer(ThreadingHTTPServer):
     """A server of a session's page, ready to serve."""
 
     def __init__(self, session: RobotSession, port: int = 0) -> None:
-        """Take a port of this machine, 0 for one that is free; OSError where it is taken."""
+        """Open a port of this machine, 0 for any free port; OSError if it is in use."""
         self.desk = Desk(session)
         self._secret = secrets.token_urlsafe(SECRET_BYTES)
         self._ticket = secrets.token_urlsafe(SECRET_BYTES)
@@ -152,14 +152,14 @@ class RobotServer(ThreadingHTTPServer):
 
     @property
     def address(self) -> str:
-        """Address for a browser to open; it holds the secret."""
+        """Address of the page, with the secret."""
         return f"http://{HOST}:{self.server_port}/{self._secret}/"
 
     @property
     def address_for_once(self) -> str:
-        """Address that leads to the page the first time that it is opened, and nowhere afterwards.
+        """Address of the page that is valid for one request only.
 
-        Arguments of programs, such as a browser's, can be read by all users of a machine.
+        Command lines of programs, such as a browser's, are visible to all users of a machine.
         """
         return f"http://{HOST}:{self.server_port}/{self._ticket}"
 
@@ -168,7 +168,7 @@ class RobotServer(ThreadingHTTPServer):
         return secrets.compare_digest(word.encode(), self._secret.encode())
 
     def takes_ticket(self, word: str) -> bool:
-        """Whether a word is the ticket of the address for once, which is spent by this."""
+        """Whether a word is the ticket of the one-time address; a valid ticket is used up."""
         with self._ticket_lock:
             valid = bool(self._ticket) and secrets.compare_digest(word.encode(), self._ticket.encode())
             if valid:
@@ -176,7 +176,7 @@ class RobotServer(ThreadingHTTPServer):
         return valid
 
     def process_request(self, request: Any, client_address: Any) -> None:
-        """Serve a connection in a new thread, or close it where there are too many."""
+        """Serve a connection in a new thread, or close it if there are too many."""
         if len(self._open) >= CONNECTIONS:
             self.shutdown_request(request)
             return
@@ -184,23 +184,23 @@ class RobotServer(ThreadingHTTPServer):
         super().process_request(request, client_address)
 
     def shutdown_request(self, request: Any) -> None:
-        """Close a connection, which makes room for another.
+        """Close a connection, and release its place.
 
-        Both threads may come to it where a signal interrupts the start of the one that serves.
+        Both threads may call it if a signal interrupts the start of the serving thread.
         """
         self._open.discard(request)
         super().shutdown_request(request)
 
     def handle_error(self, request: Any, client_address: Any) -> None:
-        """Say nothing where a page that has been closed, or that sleeps, does not take its answer."""
+        """Ignore errors of closed or sleeping pages that do not take their answers."""
         if not isinstance(sys.exception(), ConnectionError | TimeoutError):
             super().handle_error(request, client_address)
 
 
 class _Arrival(io.RawIOBase):
-    """Bytes that arrive at a socket before a moment; TimeoutError for later bytes.
+    """Reader of a socket with a deadline; raises TimeoutError after it.
 
-    A time limit of the socket begins anew with every byte: whoever sends one now and then would never end.
+    The time limit of a socket restarts with every byte: a slow sender could hold a connection for ever.
     """
 
     def __init__(self, connection: socket.socket) -> None:
@@ -208,7 +208,7 @@ class _Arrival(io.RawIOBase):
         self._end = 0.0
 
     def begin(self) -> None:
-        """Wait for the next request, from now on."""
+        """Restart the deadline, for the next request."""
         self._end = time.monotonic() + PATIENCE
 
     def readable(self) -> bool:
@@ -216,7 +216,7 @@ class _Arrival(io.RawIOBase):
         return True
 
     def readinto(self, buffer: Any) -> int:
-        """Fill a buffer with bytes that have arrived."""
+        """Fill a buffer with received bytes."""
         left = self._end - time.monotonic()
         if left <= 0.0:
             raise TimeoutError
@@ -228,10 +228,10 @@ class _Arrival(io.RawIOBase):
 
 
 class _Handler(BaseHTTPRequestHandler):
-    """GET gives the page, POST to the name of a question its answer, both as JSON."""
+    """GET returns the page; POST to the name of a question returns its answer, with JSON both ways."""
 
     protocol_version = "HTTP/1.1"
-    # A line that names no version is answered with a status too.
+    # Requests without a version get a status line too.
     default_request_version = "HTTP/1.0"
     server_version = "cosserat"
     sys_version = ""
@@ -240,14 +240,14 @@ class _Handler(BaseHTTPRequestHandler):
     server: RobotServer
 
     def setup(self) -> None:
-        """Read from the socket with a limit for each request."""
+        """Set up reading with a deadline for each request."""
         super().setup()
         self.rfile.close()
         self._arrival = _Arrival(self.connection)
         self.rfile = io.BufferedReader(self._arrival)
 
     def handle_one_request(self) -> None:
-        """Wait for a request and answer it; the connection is closed where it does not arrive in time."""
+        """Wait for a request and answer it; a late request closes the connection."""
         self._arrival.begin()
         super().handle_one_request()
 
@@ -280,18 +280,18 @@ class _Handler(BaseHTTPRequestHandler):
             self.send_error(HTTPStatus.BAD_REQUEST, str(error))
             return
         except Exception:
-            # A fault of ours: the page is told that there is no answer, and whoever started the program why.
+            # An internal error: the page gets a status without details, the terminal the traceback.
             self.send_error(HTTPStatus.INTERNAL_SERVER_ERROR)
             raise
         self._send(HTTPStatus.OK, "application/json", _json(answer))
 
     def _name(self) -> str | None:
-        """Name behind the secret in the path; None where the secret is missing."""
+        """Name after the secret in the path; None without the secret."""
         secret, slash, name = self.path.removeprefix("/").partition("/")
         return name if slash and self.server.is_secret(secret) else None
 
     def _length(self) -> int | None:
-        """Bytes of the question; None where they are refused, which has been answered then."""
+        """Length of the question, bytes; None after a refusal, which has been sent."""
         told = self.headers.get_all("Content-Length", [])
         if len(told) != 1 or "Transfer-Encoding" in self.headers:
             self.send_error(HTTPStatus.LENGTH_REQUIRED)
@@ -307,7 +307,7 @@ class _Handler(BaseHTTPRequestHandler):
         return length
 
     def _is_foreign(self) -> bool:
-        """Refuse a request that a page from elsewhere makes, under another name for this machine."""
+        """Refuse a request of a page from another origin, also under another name of this machine."""
         port = self.server.server_port
         named = self.headers.get("Host", "")
         origin = self.headers.get("Origin", f"http://{named}")
@@ -319,8 +319,7 @@ class _Handler(BaseHTTPRequestHandler):
     def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
         """Refuse a request, and close the connection.
 
-        The sentence is the content: in the line of the status, or in a header, text of the request would stand among
-            headers.
+        The sentence is sent as content: in the status line or a header, text of the request could inject headers.
         """
         status = HTTPStatus(code)
         sentence = message or status.phrase
@@ -341,11 +340,11 @@ class _Handler(BaseHTTPRequestHandler):
             self.wfile.write(content)
 
     def log_message(self, format: str, *args: Any) -> None:  # noqa: A002 - the name of the base class
-        """Say nothing of each request."""
+        """Do not log requests."""
 
 
 def _json(answer: Any) -> bytes:
-    """An answer as text; JSON has no word for NaN or infinity, and the page takes null for them."""
+    """An answer as JSON text, with null for NaN and infinity."""
     try:
         return json.dumps(answer, allow_nan=False).encode()
     except ValueError:
@@ -353,16 +352,16 @@ def _json(answer: Any) -> bytes:
 
 
 class QuestionError(Exception):
-    """The bytes are no question that is answered here."""
+    """The bytes are not a valid question."""
 
 
 class Question(BaseModel):
     """Parts of a question.
 
     Attributes:
-        inputs: stacked inputs; None for null, which JSON has in place of a number.
-        position: a point in world axes, m.
-        pose: the tip or the body that is led to it: {"rod": name} or {"body": name}.
+        inputs: stacked inputs; None for null.
+        position: a position in world axes, m.
+        pose: the tip or the body to move: {"rod": name} or {"body": name}.
     """
 
     model_config = ConfigDict(strict=True, frozen=True)
@@ -373,10 +372,10 @@ class Question(BaseModel):
 
     @classmethod
     def read(cls, content: bytes) -> Question:
-        """A question from the JSON that was sent; one without content has no parts.
+        """A question from JSON; without content it has no parts.
 
         Raises:
-            QuestionError: it is no JSON object, or a part is not of its type.
+            QuestionError: the content is not a JSON object, or a part has a wrong type.
         """
         try:
             return cls.model_validate_json(content or b"{}")
@@ -386,20 +385,20 @@ class Question(BaseModel):
             raise QuestionError(f"{part}: {fault['msg']}") from None
 
     def all_inputs(self, count: int) -> list[float | None]:
-        """The inputs, which must be so many.
+        """The inputs, checked to be ``count`` numbers.
 
         Raises:
-            QuestionError: they are not.
+            QuestionError: they are missing, or their number is wrong.
         """
         if len(self.inputs) != count:
             raise QuestionError(f"inputs must be a list of {count}")
         return self.inputs
 
     def point(self, names: Mapping[str, Collection[str]]) -> tuple[dict[str, str], list[float]]:
-        """The rod or body that is led, and where to, of a scene with these names of rods and bodies, by kind.
+        """The rod or body to move, and its target position; ``names`` are those of the scene, by kind.
 
         Raises:
-            QuestionError: a part is missing, or names nothing of the scene.
+            QuestionError: a part is missing, or its name is unknown.
         """
         if self.position is None or len(self.pose) != 1:
             raise QuestionError("a position, and a pose that names one rod or one body, are asked for")

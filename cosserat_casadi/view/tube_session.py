@@ -1,4 +1,4 @@
-"""Session of concentric tubes: equilibria are followed from the last one, in Python, with the steps of the first."""
+"""Session of concentric tubes: continuation from the last equilibrium, in Python, with the steps of the first one."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ NOTE = "A robot that snaps is solved anew from straight tubes, and may come to r
 
 
 class TubeSession(RobotSession):
-    """A robot of concentric tubes that is moved from a browser; a robot that fails stays at its last equilibrium."""
+    """A robot of concentric tubes moved from a browser; after a failure it stays at its last equilibrium."""
 
     questions = OF_EVERY_SESSION | {"reach"}
     searched = search_near
@@ -47,7 +47,7 @@ class TubeSession(RobotSession):
             **facts_of_every_page(model, self._sliders(), points),
             "layout": list(self._layout()),
             "poses": [{"rod": name} for name in robot.names],
-            # One plate holds all tubes.
+            # All tubes start at one base plate.
             "rods": {tube.name: _tube(tube, index) for index, tube in enumerate(robot.scene.tubes)},
             "unloaded": [rounded(straight)],
             "actuators": {},
@@ -63,7 +63,7 @@ class TubeSession(RobotSession):
         }
 
     def derivatives(self) -> list[float] | None:
-        """Derivatives of all tips by all inputs, [pose][input][7]; None where the robot snaps."""
+        """Derivatives of all tip poses by all inputs, [pose][input][7]; None at a snap."""
         model, present = self.first.model, self._present
         parts = (part.full() for part in model.sensitivity(present.x, present.inputs))
         jacobian, by_inputs, _, poses_by_x, poses_by_inputs = parts
@@ -75,7 +75,7 @@ class TubeSession(RobotSession):
         return list(of_tips.ravel().tolist())
 
     def _read(self, inputs: Sequence[float | None]) -> FloatArray:
-        """Stacked inputs as the page sends them; SceneError where one is no number, or out of its range."""
+        """Stacked inputs from the page; SceneError if one is not a number or out of range."""
         return np.asarray(self.model.pack(stacked_inputs(inputs)))
 
     def _followed(self, given: FloatArray) -> TubeSolution:
@@ -102,7 +102,7 @@ class TubeSession(RobotSession):
         return {**state_of(found, np.concatenate(numbers), anew=anew), "text": found.message}
 
     def _layout(self) -> Iterator[dict[str, Any]]:
-        """Where each part lies among the drawn numbers: tubes, then the arrows of loads."""
+        """Layout of the parts in the drawn numbers: tubes, then arrows of loads."""
         robot = self.first.robot
         tube = {"kind": "rod", "rows": POSE_SIZE, "columns": len(SECTIONS)}
         parts: list[dict[str, Any]] = [{**tube, "name": name} for name in robot.names]
@@ -116,7 +116,7 @@ class TubeSession(RobotSession):
             first += part["rows"] * part["columns"]
 
     def _sliders(self) -> list[Slider]:
-        """A slider for each number: over its range, a turn of a drive, or loads that bend the robot to an arc."""
+        """A slider for each input: over its range, one turn of a drive, or loads that bend the robot to an arc."""
         model = self.first.model
         robot = model.robot
         lower, upper = ranges_of_inputs(model.scene, model.inputs)
@@ -136,7 +136,7 @@ class TubeSession(RobotSession):
 
 
 def _tube(tube: scenes.Tube, index: int) -> dict[str, Any]:
-    """Colour and outer radius of a tube, m; nothing of one that is given by its stiffness."""
+    """Colour and outer radius of a tube, m; no radius for a tube given by its stiffness."""
     described: dict[str, Any] = {"colour": rod_colour(index), "carried": index > 0, "see_through": True, "disks": []}
     if tube.section is not None:
         radii = [float(tube.section.outer_radius)] * len(SECTIONS)
@@ -145,13 +145,13 @@ def _tube(tube: scenes.Tube, index: int) -> dict[str, Any]:
 
 
 def _drawn(solution: TubeSolution) -> Iterator[FloatArray]:
-    """Drawn parts in the order of the layout, a row for each section or arrow."""
+    """Drawn parts in the order of the layout, one row for each section or arrow."""
     robot = solution.robot
     for reach in robot.translations(solution.inputs):
         position, quaternion = solution.shape.between(float(reach) * SECTIONS)
         yield np.hstack([position, quaternion])
     for load, tube in borne_loads(robot):
         starts, vector = arrows_on(solution, load, tube)
-        # What the housing bears is no arrow: one of no length keeps its place.
+        # A load on the housing is not drawn: an arrow of length zero fills its place.
         places = starts or [np.zeros(3)]
         yield np.array([[*place, *(vector if starts else np.zeros(3))] for place in places])

@@ -1,4 +1,4 @@
-"""Session of a page in the browser: equilibria, derivatives, inputs for a point, modes, the motion."""
+"""Session with a compiled library: equilibria, derivatives, inputs for a target, modes and the motion."""
 
 from __future__ import annotations
 
@@ -42,29 +42,29 @@ NAME = "viewed"
 """Prefix of the symbols of the compiled library."""
 
 SWING = 0.15
-"""Largest displacement of a mode that is drawn over the rod's length, or largest angle, rad."""
+"""Largest drawn displacement of a mode over the length of the rod, or largest drawn angle, rad."""
 
 PERIOD_FRAMES = 60
-"""Pictures of one period of a mode."""
+"""Number of pictures of one period of a mode."""
 
 MODES = 6
-"""Modes that are offered."""
+"""Largest number of modes."""
 
 FRAME_RATE = 60.0
-"""Pictures per second of a motion, as far as they are not too few or too many."""
+"""Pictures per second of a motion, within the limits of their number."""
 
 FEWEST_FRAMES, MOST_FRAMES = 100, 600
 
 REFINED_SHARE = 0.5
-"""Share of the tolerance for which modes are chosen at the hand: the estimate lies above the error by a factor."""
+"""Share of the tolerance in the choice of refined modes: the estimate exceeds the error by a factor."""
 
 
 @dataclass
 class ViewSession(RobotSession):
-    """A robot that is moved by its compiled library.
+    """A robot moved by its compiled library.
 
     Attributes:
-        library: the compiled library of its model, with the picture.
+        library: the compiled library of its model, with the drawing function.
     """
 
     library: Compiled = field(kw_only=True)
@@ -87,7 +87,7 @@ class ViewSession(RobotSession):
         return list(np.concatenate(by_inputs).tolist())
 
     def eigenvalues(self) -> list[float] | None:
-        """Eigenvalues of the second variation, ascending; None where stability has no meaning."""
+        """Eigenvalues of the second variation, ascending; None if stability is undefined."""
         if not self._present.converged or not self.first.model.has_potential(self._present.inputs):
             return None
         model = self.first.model
@@ -95,12 +95,12 @@ class ViewSession(RobotSession):
         return list(admissible_eigenvalues(jacobian, variations(model)).tolist())
 
     def refined(self, inputs: Sequence[float | None]) -> dict[str, Any]:
-        """The equilibrium for these inputs to the tolerance, on modes that are chosen for them.
+        """The equilibrium for these inputs within the tolerance, with modes chosen for them.
 
-        Newton's method starts from the present equilibrium, which is beside it: it stays on the branch.
+        Newton's method starts from the present equilibrium, nearby on the same branch.
 
         Returns:
-            ``within`` and ``text`` as of :meth:`accuracy`, and its ``drawn`` parts; None where it is not within the
+            ``within`` and ``text`` as of :meth:`accuracy`, and its ``drawn`` parts; None if it is not within the
             tolerance either.
         """
         near = self._last.x
@@ -119,10 +119,10 @@ class ViewSession(RobotSession):
         return {**answer, "text": text, "drawn": drawn_numbers(model, found).tolist()}
 
     def modes(self) -> dict[str, Any]:
-        """Modes about the present equilibrium, each with the pictures of one period.
+        """Modes at the present equilibrium, each with the pictures of one period.
 
         Raises:
-            SceneError: nothing that may move has mass.
+            SceneError: no movable part has mass.
         """
         model = self.first.model
         solution = solve(model, model.inputs.unpack(self._present.inputs), start=self._last.x)
@@ -130,7 +130,7 @@ class ViewSession(RobotSession):
         phases = 2 * np.pi * np.arange(PERIOD_FRAMES) / PERIOD_FRAMES
         entries = []
         for mode in found.modes:
-            # From the equilibrium on.
+            # The period starts at the equilibrium.
             swing = SWING * np.imag(np.exp(1j * phases)[:, None] * mode.vector)
             pictures = [self.library.drawn(solution.x + part, self._present.inputs).full()[:, 0] for part in swing]
             words = f"{mode.frequency:.4g} Hz, {mode.words}"
@@ -138,10 +138,10 @@ class ViewSession(RobotSession):
         return {"text": found.stability, "modes": entries}
 
     def motion(self) -> dict[str, Any]:
-        """The motion of the scene, at its own inputs, as pictures evenly spaced in time.
+        """The motion of the scene with the inputs of the scene, as pictures evenly spaced in time.
 
         Raises:
-            SceneError: nothing that may move has mass.
+            SceneError: no movable part has mass.
         """
         motion: Motion = simulate(self.first.model.scene, compiled=False)
         if not len(motion.times):
@@ -155,7 +155,7 @@ class ViewSession(RobotSession):
         return {"text": motion.message, "times": times.tolist(), "frames": _packed(np.array(pictures))}
 
     def _followed(self, given: FloatArray) -> CompiledSolution | None:
-        # The first move begins at the unloaded scene.
+        # The first move starts from the unloaded scene.
         if self._present is self.first or not self._present.converged:
             return None
         return self.library.follow(self._present.inputs, given, self._present.x)
@@ -169,7 +169,7 @@ class ViewSession(RobotSession):
 
 
 def is_compiled(scene: scenes.Scene) -> bool:
-    """Whether the compiled library moves a scene; tubes and exact contact are solved by Python alone."""
+    """Whether a scene is moved by a compiled library; tubes and exact contact are solved in Python only."""
     if scene.tubes:
         return False
     try:
@@ -182,12 +182,12 @@ def is_compiled(scene: scenes.Scene) -> bool:
 def opened(
     solution: Equilibrium[Any], progress: StageProgress | None = None, asked: Given | None = None
 ) -> RobotSession:
-    """A session of a solved scene, with its library compiled, or found compiled, where it has one.
+    """A session of a solved scene; its library, if it has one, is compiled or taken from the cache.
 
     Args:
-        solution: the equilibrium at the scene's own inputs.
-        progress: told how far the compilation is.
-        asked: ranges of the sliders; by default the ranges that modes are chosen for.
+        solution: the equilibrium at the inputs of the scene.
+        progress: called with the progress of the compilation.
+        asked: ranges of the sliders; by default those of the choice of modes.
 
     Raises:
         ExportError: there is no C compiler, or it fails.
@@ -198,7 +198,7 @@ def opened(
     if not is_compiled(solution.model.scene):
         return ContactSession(solution, asked)
     with tempfile.TemporaryDirectory() as folder:
-        # The compiled library lies in the cache: the sources are not needed any more.
+        # The compiled library is in the cache: the sources are no longer needed.
         sources = export(DrawnModel(solution.model.discrete), Path(folder) / NAME, NAME)
         library = load(sources, progress=progress)
     assert isinstance(library, Compiled)

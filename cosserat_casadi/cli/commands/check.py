@@ -60,10 +60,10 @@ def check(
         return
     asked = asked_ranges(ranges, checked_scene)
     if timed:
-        # A compiler that is missing is reported before anything is printed.
+        # A missing compiler is reported before any output.
         find_compiler()
     varying: list[VaryingValue] = []
-    # A pipe cannot be read again.
+    # A pipe can be read only once.
     if scene.is_file():
         varying = varying_values(checked_scene, written_tables(scene, overrides))
     with count_display("Building the model") as show_count:
@@ -90,7 +90,7 @@ def check(
 
 
 def _locking(model: Model) -> str:
-    """The sentence on locking, which an equilibrium tells; empty where nothing locks."""
+    """The sentence on locking, from an equilibrium; empty without locking."""
     if not may_be_locked(model):
         return ""
     solution = solve(model, estimate_error=False)

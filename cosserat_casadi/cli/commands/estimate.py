@@ -57,7 +57,7 @@ def estimate(
 
 
 def _print(console: Console, found: Estimate, title: str | None) -> None:
-    """How many rows were found, and how well each unknown is known in the middle one."""
+    """Print the number of rows found, and the median standard deviation of each unknown."""
     console.print(title_line(title))
     endings = ", ".join(f"{word}: {counted(count, 'row')}" for word, count in found.counts.items())
     console.print(f"{endings}.", soft_wrap=True)
@@ -81,8 +81,8 @@ def _print(console: Console, found: Estimate, title: str | None) -> None:
 
 
 def _checked_sentence(found: Estimate) -> str:
-    """The largest error of the rows that were solved again, beside the tolerance."""
-    # Of a row without an equilibrium on finer modes it is not known.
+    """The largest error of the rows that were solved again, with the tolerance."""
+    # The error of a row without an equilibrium on finer modes is unknown.
     largest = max(UNKNOWN if error is None else error for _, error in found.checked)
     error = error_words(largest, found.within_tolerance, found.model.scene.accuracy.tolerance)
     return f"{counted(len(found.checked), 'row')} solved again on finer modes: estimated error at most {error}."

@@ -47,24 +47,24 @@ from cosserat_casadi.tubes.tube_solution import TubeSolution
 from cosserat_casadi.tubes.tube_solve import solve_tubes
 
 LOAD_CASES = 32
-"""Load cases that are spread over ranges in exact contact."""
+"""Number of load cases in the ranges, in exact contact."""
 
 
 @dataclass(frozen=True)
 class Asked:
-    """Folder, files and options of an export; None for each folder or file that is not asked for.
+    """Folder, files and options of an export; None for a folder or file that is not requested.
 
     Attributes:
-        name: what every C symbol begins with.
+        name: prefix of every C symbol.
         output: folder of the sources in C.
-        page: page for a browser.
-        fmu: unit for other simulators.
-        mjcf: model of MuJoCo.
-        parts: whether each part of the sources beside equations, Jacobians and solver is asked for, by the keyword of
+        page: file of the page for a browser.
+        fmu: file of the FMU, for other simulators.
+        mjcf: file of the MuJoCo model.
+        parts: whether each part of the sources besides equations, Jacobians and solver is requested, by keyword of
             :func:`cosserat_casadi.export`.
-        over: file of the load cases whose exact contacts the sources know.
-        period: seconds that the longest turn of a control loop may take.
-        estimate_errors: whether every answer of the sources carries the estimate of its error.
+        over: file of load cases, for the exact contacts in the sources.
+        period: longest period of a control loop, s.
+        estimate_errors: whether the sources return an error estimate with every answer.
     """
 
     name: str
@@ -79,7 +79,7 @@ class Asked:
 
     @property
     def source_options(self) -> dict[str, bool]:
-        """Whether each option of the sources stands in the command."""
+        """Whether each option of the sources is given in the command."""
         return {
             **{f"--{part}": wanted for part, wanted in self.parts.items()},
             "--over": self.over is not None,
@@ -89,14 +89,14 @@ class Asked:
 
     @property
     def files(self) -> dict[str, Path]:
-        """Files to write beside the folder, by option."""
+        """Files to write besides the folder, by option."""
         files = {"--page": self.page, "--fmu": self.fmu, "--mjcf": self.mjcf}
         return {option: file for option, file in files.items() if file is not None}
 
     @property
     def written(self) -> dict[str, Path | None]:
-        """Files to write, by option, and files of an earlier export in the folder, which are written over."""
-        # Names of files are no options: they tell the many of one folder apart.
+        """Files to write, by option, and files of an earlier export in the folder, which are overwritten."""
+        # Files in the folder have their names as keys instead of options.
         there = self.output.iterdir() if self.output is not None and self.output.is_dir() else ()
         return {**self.files, **{f"--output, {file.name}": file for file in there}}
 
@@ -106,7 +106,7 @@ class Asked:
         return self.parts["dynamics"] or self.fmu is not None
 
     def check(self) -> None:
-        """Refuse an export of nothing, files that cannot be written, and options of sources without their folder.
+        """Refuse an empty export, files that cannot be written, and options of sources without a folder.
 
         Raises:
             ExportError: the export, a file or an option is refused.
@@ -224,7 +224,7 @@ def export(
         _export_tubes(read, output, name, batches=batches)
         return
     of_links = None if mjcf is None else mjcf_of(read, links)
-    # Sources, page and unit are written from a model whose modes and nodes a solve chooses.
+    # Sources, page and FMU need a model with modes and nodes chosen by a solve.
     if output is None and page is None and fmu is None:
         _write_mjcf(of_links, mjcf)
         return
@@ -238,9 +238,9 @@ def export(
     solved_scene = exported_scene.held().without_exact_rods() if asked.moves else exported_scene
     chosen_cases = None
     if given_cases is not None:
-        # A library begins at the scene's own inputs.
+        # The library starts at the inputs of the scene.
         chosen_cases = [{}, *map(case_layout(read).unpack, given_cases)]
-    # In exact contact the samples are load cases: choosing modes at as many would take minutes.
+    # In exact contact the samples are load cases: a choice of modes at all of them would take minutes.
     in_ranges = None if solved_scene.touches_exactly else samples
     chosen_ranges = given_ranges if given_cases is None else {}
     choice = choose_with_progress(solved_scene, chosen_ranges, in_ranges, chosen_cases)
@@ -299,7 +299,7 @@ def _checked(
 
 
 def _checked_scene(scene: Scene, asked: Asked) -> Scene:
-    """The scene with the inputs that its export has.
+    """The scene with the inputs of its export.
 
     Raises:
         ExportError: the scene, the name or an option is refused.
@@ -314,7 +314,7 @@ def _checked_scene(scene: Scene, asked: Asked) -> Scene:
         check_stability(build(scene, discretise(scene, 1, 2)))
     if asked.page is not None:
         check_contact(scene, {})
-        # Last: a scene that has no page has none with a compiler either.
+        # Last, because a scene without support for pages has none with a compiler either.
         find_wasm_compiler()
     return scene
 
@@ -327,7 +327,7 @@ def _write(
     cases: FloatArray | None,
     ranges: Given,
 ) -> None:
-    """Write sources, FMU and page of a scene on the modes and nodes that were chosen, and say where they are."""
+    """Write sources, FMU and page of a scene with the chosen modes and nodes, and print their paths."""
     console = Console()
     model = solution.model
     if asked.moves or scene.parameters:
@@ -359,7 +359,7 @@ def _write(
 
 
 def _write_mjcf(model: Mjcf | None, path: Path | None) -> None:
-    """Write a model of MuJoCo where one is asked for, and name the things of the scene that it lacks."""
+    """Write a model of MuJoCo if requested, and print which objects of the scene it lacks."""
     if model is None or path is None:
         return
     model.write(path)
@@ -369,14 +369,14 @@ def _write_mjcf(model: Mjcf | None, path: Path | None) -> None:
 
 
 def _check_solved(solution: Solution | TubeSolution) -> None:
-    """Write nothing where there is no equilibrium, and say why."""
+    """End the command with a message if there is no equilibrium."""
     if not solution.converged:
         Console(stderr=True).print(f"[bold red]Nothing was written.[/] {solution.message}")
         raise typer.Exit(NOT_FOUND)
 
 
 def _export_tubes(scene: Scene, output: Path, name: str, *, batches: bool) -> None:
-    """Write concentric tubes with the steps that the scene's own inputs need."""
+    """Write concentric tubes with the steps for the inputs of the scene."""
     scene_names(name, scene)
     solution = solve_tubes(scene)
     _check_solved(solution)

@@ -25,7 +25,7 @@ from cosserat_casadi.scene.unknown_records import MOST_STARTS
 from cosserat_casadi.scene.writing import scene_text
 
 ENDED_EARLY = "The numbers are those at which the search ended."
-"""The sentence in a scene that is written although the identification failed."""
+"""The warning in a scene that is written after a failed identification."""
 
 
 def identify(
@@ -71,7 +71,7 @@ def identify(
         else:
             text = scene_text(beside(fitted, write.parent))
             if not found.converged:
-                # A scene with numbers that were not found would look like one that was.
+                # A scene with the numbers of a failed search would look like an identified one.
                 text = f"# {found.message} {ENDED_EARLY}\n\n{text}"
             write_atomically(write, text.encode())
             written.append(write)

@@ -27,7 +27,7 @@ UNSTABLE = (
     "the equilibrium at these inputs is not stable: a real rod leaves it. Add --stable to look for a stable one, or "
     "--unstable to accept this one."
 )
-"""A warning, with what to do about it."""
+"""A warning with its remedy."""
 
 
 def inverse(
@@ -69,14 +69,14 @@ def inverse(
     print_inverse(Console(), solved, write_all(solved, output, plot))
     if solved.unstable and not unstable and not stable:
         print_warnings(Console(stderr=True), [UNSTABLE])
-    # The files hold the closest pose then.
+    # In this case the files hold the closest pose.
     refused = solved.unstable and not unstable
     if refused or not solved.met:
         raise typer.Exit(NOT_FOUND)
 
 
 def _check_table(output: Path | None, plot: Path | None) -> None:
-    """Refuse options that a table has no use for, or needs."""
+    """Refuse options that do not apply to a table, and missing ones that it needs."""
     problems = []
     if output is None:
         problems.append(Problem("--output", "missing", "name the CSV file for what is found for the table"))

@@ -42,7 +42,7 @@ def modes(
         found = modes_of(checked_scene, count=count, progress=display.show_share, report=display.show_stage)
     _check_mode_is_there(found, animation, mode)
     written = write_all(found, output, plot)
-    # Where there is no equilibrium nothing swings.
+    # Without an equilibrium there are no modes.
     if animation is not None and found.modes:
         written.append(found.animate(animation, mode=mode))
     print_modes(Console(), found, written)
@@ -51,7 +51,7 @@ def modes(
 
 
 def _check_mode_is_there(found: Modes, animation: Path | None, number: int) -> None:
-    """Refuse to draw a mode that the scene does not have: with little mass it has fewer than were asked for.
+    """Refuse to draw a mode that does not exist: a scene with few masses has fewer modes than requested.
 
     Raises:
         SceneError: there are modes, but not this one.

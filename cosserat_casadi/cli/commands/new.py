@@ -18,7 +18,7 @@ TEMPLATES = Path(__file__).resolve().parents[1] / "templates"
 
 
 class Template(StrEnum):
-    """Scenes to begin with, each a file of the folder ``templates``."""
+    """Template scenes, each a file of the folder ``templates``."""
 
     WIRE = "wire"
     TENDON_ROBOT = "tendon-robot"

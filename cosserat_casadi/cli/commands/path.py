@@ -31,18 +31,18 @@ from cosserat_casadi.spelling import counted
 from cosserat_casadi.tubes.robot import robot_of
 
 MOST_POINTS = 1000
-"""Largest count of points in a range: half of the steps that a path may take."""
+"""Largest number of points in a range: half of the largest number of steps."""
 
 
 @dataclass(frozen=True)
 class _Way:
-    """The way of the input that a path follows.
+    """The values of the input along a path.
 
     Attributes:
         name: the input.
-        value: where it goes.
-        start: the value at which the path begins, by the name of the input; empty for the usual one.
-        limits: of the path; None for the usual ones.
+        value: its value at the end.
+        start: value at the start of the path, by name of the input; empty for the default.
+        limits: limits of the path; None for the default.
     """
 
     name: str
@@ -78,7 +78,7 @@ def path(
     animation: Annotated[Path | None, typer.Option(help="Draw the shapes in motion here: .gif or .mp4.")] = None,
 ) -> None:
     """Follow equilibria while an input moves, through folds. Exit codes: 0, 2 refused, 3 not at factor 1."""
-    # Every check adds to the list; the last one raises, so that all faults are seen at once.
+    # Every check adds to the list, and the last one raises, so that all faults are reported at once.
     problems: list[Problem] = []
     if bifurcation == 0:
         problems.append(Problem("--bifurcation", "must not be 0", "count from 1; -1 is the other half of that branch"))
@@ -100,7 +100,7 @@ def path(
         )
 
     written = write_all(followed, output, table, plot)
-    # A path that was not started has nothing to show.
+    # A path without points has no figure.
     if animation is not None and len(followed.factor):
         with share_display("Drawing the animation") as show_share:
             written.append(followed.animate(animation, progress=show_share))
@@ -120,11 +120,11 @@ def _check_way(
     ranges: list[str],
     problems: list[Problem],
 ) -> tuple[Scene, _Way]:
-    """The scene, and the way of its input.
+    """The scene, and the values of its input along the path.
 
     Args:
-        scene_file: the scene.
-        settings: values of it to change.
+        scene_file: file of the scene.
+        settings: changed values of the scene.
         name: the input.
         text: its value, as TOML.
         ranges: texts of --range.
@@ -181,7 +181,7 @@ def _asked_range(text: str) -> AskedRange:
 
 
 def _way_of(scene: Scene, asked: AskedRange) -> _Way:
-    """The way of one number of an input from a value to another; other numbers keep the scene's values.
+    """The values of an input with one number going from a value to another; other numbers keep the values of the scene.
 
     Raises:
         SceneError: the scene has no such number.
@@ -218,7 +218,7 @@ def _check_name_and_size(scene: Scene, name: str, value: FloatArray | None) -> N
     if scene.tubes:
         robot_of(scene).input_index(name)
         return
-    # Building also refuses what reading cannot see: inputs that over-constrain.
+    # Building also refuses overconstraining inputs, which reading cannot detect.
     layout = build(scene).inputs
     if value is None:
         defaults = dict(zip(layout.names, layout.defaults, strict=True))
@@ -233,7 +233,7 @@ def _vector(text: str) -> FloatArray:
         SceneError: the text is none of these, or a number is not finite.
     """
     try:
-        # Inside a list the text must be one value: "1], b = [2" would be two keys otherwise, and "1,5" the number 1.
+        # Inside a list the text must be one value: otherwise "1], b = [2" would be two keys, and "1,5" the number 1.
         (value,) = tomllib.loads(f"value = [{text}]")["value"]
         array = _array(value)
     except (tomllib.TOMLDecodeError, TypeError, ValueError):

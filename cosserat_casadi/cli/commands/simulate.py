@@ -27,10 +27,10 @@ from cosserat_casadi.results.start_file import read_start
 from cosserat_casadi.scene import Scene, read_scene
 
 HASTY_FRAMES = 10
-"""Frames below which an animation shows little but its ends."""
+"""Least number of frames of a useful animation."""
 
 UNHURRIED = 5.0
-"""Time that an animation of few frames takes at the speed which is proposed for it, s."""
+"""Duration of an animation at the speed proposed for one with few frames, s."""
 
 
 def simulate(
@@ -75,10 +75,10 @@ def simulate(
     Exit codes: 0 computed to its end, 2 refused, 3 ended early, 130 interrupted. The motion is written as far as
     it was computed, in any case but 2.
     """
-    # Options that stand for a key of the scene come last: they win over --set.
+    # Options for keys of the scene come last: they override --set.
     keys = {"step": step, "duration": duration, "frames": frames, "tolerance": tolerance}
     overrides = (f"simulation.{key}={value!r}" for key, value in keys.items() if value is not None)
-    # An override is told as the option that it came from.
+    # Faults of an override name its option.
     options = {f"--set simulation.{key}": f"--{key}" for key, value in keys.items() if value is not None}
     problems: list[Problem] = []
     if output is not None:
@@ -101,10 +101,10 @@ def simulate(
     if output is not None and part is not None:
         output = output.with_stem(f"{output.stem}-*")
     if motion.outcome is MotionOutcome.INTERRUPTED:
-        # Who has stopped a simulation does not want to wait for pictures of it.
+        # After an interrupt no pictures are drawn, which would take time.
         print_motion(Console(), motion, given_files(output))
         raise StoppedError
-    # A motion that was not started has no picture.
+    # A motion without states has no picture.
     if not len(motion.times):
         plot = None
         animation = None
@@ -125,7 +125,7 @@ def _check_scene(
     start: Path | None,
     problems: list[Problem],
 ) -> tuple[Scene, StartOfMotion]:
-    """The scene, and the solution that the motion starts from where a file names one.
+    """The scene, and the start of the motion if a file gives one.
 
     Raises:
         SceneError: with those problems and every fault of the scene and the result file.
@@ -148,7 +148,7 @@ def _check_scene(
 def _simulate_with_progress(
     scene: Scene, start: StartOfMotion, compiled: bool | None, output: Path | None, part: float | None
 ) -> Motion:
-    """Simulate a scene and show how far the simulation is."""
+    """Simulate a scene with a progress bar."""
     # Imported here, because the integrator is needed by this command alone.
     from cosserat_casadi.motion.motion_refinement import simulate
 
@@ -159,7 +159,7 @@ def _simulate_with_progress(
 
 
 def _animate(motion: Motion, file: Path, speed: float) -> None:
-    """Draw an animation, and say how to slow it down where it has next to no frames."""
+    """Draw an animation, and print how to slow it down if it has very few frames."""
     with share_display("Drawing the animation") as show_share:
         motion.animate(file, speed=speed, progress=show_share)
     if file.suffix.lower() in MESHES:
@@ -169,6 +169,6 @@ def _animate(motion: Motion, file: Path, speed: float) -> None:
     frames = len(frame_times(motion, speed))
     computed_time = float(motion.times[-1] - motion.times[0])
     if frames < HASTY_FRAMES and computed_time > 0.0:
-        # One digit is enough for a factor that is only proposed.
+        # One digit is enough for a proposed factor.
         proposed = float(f"{computed_time / UNHURRIED:.1g}")
         print_hasty_animation(Console(stderr=True), frames, proposed)

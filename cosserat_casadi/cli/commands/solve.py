@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from cosserat_casadi.tubes.tube_solution import TubeSolution
 
 UNSTABLE = "this equilibrium is not stable: a real rod leaves it. Add --stable to find one that it keeps."
-"""A warning, with what to do about it."""
+"""A warning with its remedy."""
 
 
 def solve(
@@ -75,26 +75,26 @@ def solve(
         from cosserat_casadi.tubes.tube_equilibria import all_equilibria
 
         equilibria = all_equilibria(read)
-        # Without an equilibrium there is nothing to draw.
+        # Without an equilibrium there is no figure.
         _give(equilibria, output, plot if equilibria.solutions else None, as_json=as_json)
         if not equilibria.complete:
             raise typer.Exit(NOT_FOUND)
         return
     solution = solve_with_progress(read, stable=stable)
     _give(solution, output, plot, as_json=as_json)
-    # On standard error, so that --json stays pure; None is no verdict.
+    # On standard error, so that standard output holds only JSON; None is no verdict.
     if solution.converged and solution.stable is False and not stable:
         print_warnings(Console(stderr=True), [UNSTABLE])
-    # Where stability cannot be judged, --stable has not found what it was asked for.
+    # If stability is undefined, --stable fails.
     found = solution.converged and (solution.stable or not stable)
-    # Where no tolerance is asked for, None is no miss.
+    # None, without a requested tolerance, is no failure.
     missed = solution.within_tolerance is False
     if not found or missed:
         raise typer.Exit(NOT_FOUND)
 
 
 def solve_with_progress(scene: Scene, *, stable: bool = False) -> Solution | TubeSolution:
-    """Solve a scene and show how far the solve is."""
+    """Solve a scene with a progress bar."""
     with solve_display("Solving") as display:
         return solve_scene(scene, stable=stable, progress=display.show_share, report=display.show_stage)
 
@@ -105,7 +105,7 @@ def _give(
     """Write, draw and print the solution."""
     written = write_all(solution, output, plot)
     if as_json:
-        # JSON is UTF-8, whatever the terminal knows.
+        # JSON is UTF-8, whatever the encoding of the terminal.
         write_whole(binary_output(), json_text(solution.to_dict()).encode())
     elif isinstance(solution, Solution):
         print_solution(Console(), solution, written)

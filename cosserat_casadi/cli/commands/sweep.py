@@ -100,7 +100,7 @@ def sweep(
     with collect_problems(problems):
         table = _asked_table(over, ranges or [], output, sobol=sobol is not None)
     if swept_scene is None or table is None:
-        # Without them the output is all that can still be looked at.
+        # Without scene and table only the output is left to check.
         problems.extend(output_problems(output, None))
     else:
         with collect_problems(problems):
@@ -117,7 +117,7 @@ def sweep(
     if problems or plan is None:
         raise SceneError(*problems)
 
-    # Asked now: once the sweep has run it is finished in any case.
+    # Evaluated now: after the run the sweep is always finished.
     finished_before = plan.finished
     if part is not None:
         with _stoppable(part.file(output)) as show_count:
@@ -137,14 +137,14 @@ def sweep(
         if plot is not None:
             write(swept, plot, colour=colour)
         print_sweep(Console(), swept, output, plot, finished=finished_before)
-    # The rows are written in any case; the exit code says whether they can be trusted.
+    # The rows are always written; the exit code reports missed tolerances.
     if not swept.holds:
         raise typer.Exit(NOT_FOUND)
 
 
 @contextmanager
 def _stoppable(kept: Path | None) -> Iterator[StageProgress]:
-    """Show how far a sweep is; where it is stopped, say in which file the rows stand that are done."""
+    """Show the progress of a sweep; after a stop print the file with the finished rows."""
     try:
         with count_display("Reading the table", RateColumn()) as show_count:
             yield show_count
@@ -154,7 +154,7 @@ def _stoppable(kept: Path | None) -> Iterator[StageProgress]:
 
 
 def _check_shard(shard: str | None, merge: bool, plot: Path | None, problems: list[Problem]) -> Shard | None:
-    """The shard that is asked for, if one is."""
+    """The requested shard, or None."""
     if shard is None:
         return None
     if merge:
@@ -186,7 +186,7 @@ def _check_colour(colour: str | None, plot: Path | None, plan: Plan | None, prob
     if plot is None:
         problems.append(Problem("--colour", "is for a figure", "name its file with --plot"))
     if plan is None:
-        # Which columns there will be is not known.
+        # The columns are unknown.
         return
     columns = ("outcome", *plan.columns)
     if colour not in columns:
@@ -194,7 +194,7 @@ def _check_colour(colour: str | None, plot: Path | None, plan: Plan | None, prob
 
 
 def _write_sobol(swept: Sweep, file: Path, plot: Path | None) -> None:
-    """Write, draw and print the indices of a sweep that was drawn for them."""
+    """Write, draw and print the Sobol indices of a sweep with rows sampled for them."""
     indices = sobol_indices(swept)
     written = write_all(indices, file)
     if plot is not None:

@@ -74,7 +74,7 @@ def tune(
         choice = choose_with_progress(free, cases=[layout.unpack(case) for case in cases])
     Console().print(discretisation_table(choice.model))
     print_choice(Console(), choice)
-    # A scene that misses the tolerance is not written: it would be taken for one that meets it.
+    # A scene that misses the tolerance is not written, so that it is not taken for one that meets it.
     if not choice.met:
         raise typer.Exit(NOT_FOUND)
     write_atomically(output, scene_text(choice.scene).encode())

@@ -48,8 +48,8 @@ def view(
         find_compiler()
     choice = None
     solution: Equilibrium[Any]
-    # Every answer in the view tells its error: modes that the scene fixes need not be verified beforehand, and in exact
-    # contact, where a choice takes up to minutes, modes suit the scene's own inputs.
+    # Every answer in the view has an error estimate: modes fixed by the scene need no verification before, and in exact
+    # contact, where a choice takes up to minutes, modes are chosen for the scene's inputs.
     if viewed_scene.tubes or (not asked and (viewed_scene.accuracy.fixed or viewed_scene.touches_exactly)):
         solution = solve_with_progress(viewed_scene)
         if isinstance(solution, Solution):

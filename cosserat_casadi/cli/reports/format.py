@@ -1,4 +1,4 @@
-"""Pieces that several reports share."""
+"""Common parts of reports."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ def title_line(title: str | None) -> str:
 
 
 def print_outcome(console: Console, title: str | None, message: str, *, good: bool, doubtful: bool = False) -> None:
-    """Print the title of a scene and how its computation ended: in green, yellow where it is doubtful, or red."""
+    """Print the title of a scene and the outcome of its computation, in green, yellow if doubtful, or red."""
     colour = "yellow" if doubtful else "green"
     console.print(title_line(title))
     console.print(f"[bold {colour if good else 'red'}]{escape(message)}[/]")
 
 
 def print_written(console: Console, files: Iterable[Path], *, soft_wrap: bool = False) -> None:
-    """Name the files that were written."""
+    """Print the names of the written files."""
     for file in files:
         console.print(f"wrote {escape(str(file))}", soft_wrap=soft_wrap)
 
@@ -34,10 +34,10 @@ def table_of(
     """An empty table.
 
     Args:
-        headings: of columns of text.
-        right: headings of the columns of numbers behind them, which stand on the right.
-        unbroken: which of the first have words that stay on one line.
-        fold: which of the first have words that are broken where they are too long: a name cut off names nothing.
+        headings: headings of text columns.
+        right: headings of the following number columns, which are right-aligned.
+        unbroken: text columns without line breaks.
+        fold: text columns with line breaks inside long words, so that names are not cut off.
     """
     table = Table()
     for heading in headings:
@@ -48,7 +48,7 @@ def table_of(
 
 
 def listed(numbers: Sequence[int], noun: str) -> str:
-    """Numbers behind their noun, such as "row 3" or "rows 3, 7"."""
+    """Noun and numbers, such as "row 3" or "rows 3, 7"."""
     numbers_text = ", ".join(str(number) for number in numbers)
     if len(numbers) > 1:
         noun = f"{noun}s"
@@ -56,6 +56,6 @@ def listed(numbers: Sequence[int], noun: str) -> str:
 
 
 def print_warnings(console: Console, warnings: Iterable[str]) -> None:
-    """Print what limits a result, such as a load that jumps."""
+    """Print warnings on a result, such as a discontinuous load."""
     for warning in warnings:
         console.print(f"[bold yellow]Warning:[/] {escape(warning)}", soft_wrap=True)

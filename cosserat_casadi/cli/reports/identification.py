@@ -17,7 +17,7 @@ from cosserat_casadi.identification import Identification
 from cosserat_casadi.spelling import counted
 
 MOST_CASES = 10
-"""Unknowns of single cases that are printed for so many cases; the file has them all."""
+"""Largest number of cases with printed unknowns; the file has them all."""
 
 
 def print_identification(console: Console, found: Identification, written: Sequence[Path]) -> None:
@@ -38,7 +38,7 @@ def print_identification(console: Console, found: Identification, written: Seque
 
 
 def print_refused_scene(console: Console, refusal: SceneError) -> None:
-    """Print why the values make no scene: nothing was written."""
+    """Print why the values give no valid scene, so that none was written."""
     for problem in refusal.problems:
         console.print(f"[bold red]No scene was written:[/] {escape(str(problem))}", soft_wrap=True)
 
@@ -73,7 +73,7 @@ def _number(value: float, figures: int) -> str:
 
 
 def _residuals(found: Identification) -> str:
-    """How far model and measurements are apart, as a sentence."""
+    """Sentence with the residuals between model and measurements."""
     numbers = sum(not row.held_out for row in found.rows)
     sentence = (
         f"{counted(numbers, 'number')} in {counted(len(found.cases), 'case')}, residuals {found.rms():.3g} σ (rms)"

@@ -16,7 +16,7 @@ from cosserat_casadi.results.inverse_table import MET
 from cosserat_casadi.spelling import counted
 
 MOST_TOLD = 20
-"""Rows that failed which are told; the file has them all."""
+"""Largest number of printed failed rows; the file has them all."""
 
 
 def print_inverse_table(
@@ -26,7 +26,7 @@ def print_inverse_table(
     outcomes: Sequence[str],
     output: Path,
 ) -> None:
-    """Print how many rows are met, and of rows that are not the line, the outcome and why; then the largest error."""
+    """Print the number of met rows; line, outcome and message of other rows; and the largest error."""
     failed = [row for row, outcome in enumerate(outcomes) if outcome != MET]
     rows = counted(len(outcomes), "row")
     if not failed:
@@ -45,7 +45,7 @@ def print_inverse_table(
 
 
 def _error_sentence(targets: TargetTable, found: Sequence[Inverse]) -> str | None:
-    """The largest estimated error of the rows that are equilibria, and how many are above the tolerance, if any."""
+    """The largest estimated error of rows with an equilibrium, and the number of rows above the tolerance, if any."""
     errors = {
         row: inverse.solution.error_estimate
         for row, inverse in enumerate(found)

@@ -1,4 +1,4 @@
-"""The reports of ``check``, ``export`` and ``tune``, and how all reports tell errors and discretisations."""
+"""The reports of ``check``, ``export`` and ``tune``, and errors and discretisations for all reports."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ from cosserat_casadi.scene.varying import VaryingValue
 from cosserat_casadi.spelling import counted
 
 IDENTITY_TURN = (1.0, 0.0, 0.0, 0.0)
-"""Orientation of a joint that has none in the scene."""
+"""Orientation of a joint without one in the scene."""
 
 TURNED = 1e-6
-"""Angle between two orientations, rad, below which they count as one orientation."""
+"""Largest angle between equal orientations, rad."""
 
 
 def error_words(error: float, within: bool | None, tolerance: float | None) -> str:
-    """An estimated error with markup: in bold where it is above the tolerance; arguments as of :func:`told_error`."""
+    """An estimated error with markup, bold above the tolerance; arguments of :func:`told_error`."""
     words = told_error(error, within, tolerance)
     return f"[bold yellow]{words}[/]" if within is False else words
 
@@ -60,7 +60,7 @@ def print_check(
     cost: Price,
     of_effects: Mapping[str, Count],
 ) -> None:
-    """Print what a valid scene holds, what in it varies along the rods, and what its model costs.
+    """Print the contents of a valid scene, quantities that vary along the rods, and costs of its model.
 
     Args:
         console: where to print.
@@ -96,7 +96,7 @@ def print_check(
 
 
 def _notes_on_orientations(model: Model) -> Iterator[str]:
-    """Sentences on joints in the world that turn a section to the axes of the world, as none says otherwise."""
+    """Sentences on joints to the world without orientation that rotate a section to the world axes."""
     unloaded = model.discrete.unloaded
     for number, joint in enumerate(model.scene.joints):
         if joint.body is not None or joint.carries is not None or joint.at == 0.0:
@@ -111,7 +111,7 @@ def _notes_on_orientations(model: Model) -> Iterator[str]:
 
 
 def notes_on_planes(model: Model) -> Iterator[str]:
-    """Sentences on joints that close a loop, and hold it in a plane alone."""
+    """Sentences on joints that close a loop and hold only directions in its plane."""
     joints = {f"joints[{i}]": joint for i, joint in enumerate(model.scene.joints)}
     for placed in model.discrete.constraints:
         joint = joints.get(placed.where)
@@ -128,7 +128,7 @@ def notes_on_planes(model: Model) -> Iterator[str]:
 def print_export(console: Console, solution: Solution, folder: Path) -> None:
     """Print the files, their accuracy, and how to try them."""
     model = solution.model
-    # The forces of contacts are inputs of the solved model, not of the library.
+    # Contact forces are inputs of the solved model, not of the library.
     inputs = input_layout(without_contacts(model.scene)).size
     estimate = "not known"
     if solution.error_estimate is not None:
@@ -143,7 +143,7 @@ def print_export(console: Console, solution: Solution, folder: Path) -> None:
 
 
 def print_choice(console: Console, choice: Choice) -> None:
-    """Print what a discretisation was chosen for, and the point that is worst on it."""
+    """Print the ranges of a discretisation's choice, and the point with the largest error."""
     tolerance = choice.scene.accuracy.tolerance
     failed = len(choice.without_equilibrium)
     if choice.met:
@@ -165,10 +165,10 @@ def print_choice(console: Console, choice: Choice) -> None:
 
 
 def print_missed(console: Console, *, fixed: bool) -> None:
-    """Print that the files do not keep the tolerance, and the remedy.
+    """Print that the files miss the tolerance, and the remedy.
 
     Args:
-        console: of standard error.
+        console: console of standard error.
         fixed: whether the scene fixes modes, nodes or rotation.
     """
     remedy = "narrow the ranges, or ask for a larger tolerance"
@@ -178,13 +178,13 @@ def print_missed(console: Console, *, fixed: bool) -> None:
 
 
 def print_locking(console: Console, sentence: str) -> None:
-    """Print that modes are locked, where they are."""
+    """Print the sentence on locking, if there is one."""
     if sentence:
         console.print(f"[bold red]{escape(sentence)}[/]")
 
 
 def print_ranges(console: Console, ranges: CaseRanges) -> None:
-    """Print the ranges that a discretisation is chosen for, and where each comes from."""
+    """Print the ranges for the choice of a discretisation, and the source of each."""
     table = table_of("range", "where it comes from")
     for line, origin in ranges.with_origins():
         table.add_row(escape(line), escape(origin.value))
@@ -194,12 +194,12 @@ def print_ranges(console: Console, ranges: CaseRanges) -> None:
 
 def _point(values: Mapping[str, FloatArray]) -> str:
     """Inputs and parameters in words."""
-    # Inputs are columns, (3, k) with k Legendre coefficients: a reader expects the components of one side by side.
+    # Inputs are columns, (3, k) with k Legendre coefficients; the components of a coefficient are printed in a row.
     return ", ".join(f"{name} = {value.T.squeeze().tolist()}" for name, value in values.items())
 
 
 def _print_varying(console: Console, varying: Sequence[VaryingValue]) -> None:
-    """Print base and tip of what varies along a rod, and how each plain list was read."""
+    """Print base and tip values of fields along a rod, and the interpretation of each plain list."""
     if not varying:
         return
     table = table_of("along a rod", "given by", right=["at the base", "at the tip"], fold=["along a rod"])
@@ -215,7 +215,7 @@ def _print_varying(console: Console, varying: Sequence[VaryingValue]) -> None:
 
 
 def _print_parameters(console: Console, model: Model) -> None:
-    """Print the numbers of the scene that are arguments of its functions, with their values."""
+    """Print the parameters of the scene, arguments of its functions, with their values."""
     if not model.parameters.size:
         return
     headings = ("parameter", "value in the scene")

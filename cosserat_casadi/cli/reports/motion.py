@@ -19,7 +19,7 @@ from cosserat_casadi.spelling import counted
 
 
 def print_motion(console: Console, motion: Motion, written: Sequence[Path]) -> None:
-    """Print the outcome, where rods and bodies end, the figures of merit, and the files that were written."""
+    """Print the outcome, final positions of rods and bodies, figures of merit, and written files."""
     missed = motion.within_tolerance is False
     print_outcome(console, motion.model.scene.title, motion.message, good=motion.converged, doubtful=missed)
     if len(motion.times):
@@ -30,7 +30,7 @@ def print_motion(console: Console, motion: Motion, written: Sequence[Path]) -> N
 
 
 def print_hasty_animation(console: Console, frames: int, speed: float) -> None:
-    """Say how an animation that is over at once can be slowed down."""
+    """Print how to slow down a very short animation."""
     console.print(
         f"The animation has {counted(frames, 'frame')}: add --speed {speed:g} to see the motion slowly.",
         soft_wrap=True,
@@ -51,12 +51,12 @@ def _end_table(motion: Motion) -> Table:
 
 
 OF_PAIRS = {"cables: taut": ("taut", "slack"), "joints: at a stop": ("stop_hit", "stop_left")}
-"""Words for changes of cables and stops, and their kinds, the one that takes energy first."""
+"""Words for events of cables and stops, and their kinds; the first kind dissipates energy."""
 
 
 def _merit_sentences(motion: Motion) -> Iterator[str]:
     """The steps of the motion, its accuracy, and its discretisation, with markup."""
-    # Why there was no start is told by the outcome.
+    # The outcome explains a missing start.
     if motion.start and motion.start not in motion.message:
         yield escape(f"start: {motion.start}")
     yield f"steps: {_step_words(motion)}"
@@ -80,7 +80,7 @@ def _merit_sentences(motion: Motion) -> Iterator[str]:
 
 
 def _contact_words(motion: Motion) -> str:
-    """How often contact changed, and what the impacts took."""
+    """Number of contact events, and energy lost in impacts."""
     impacts = sum(event.kind == "impact" for event in motion.events)
     lift_offs = sum(event.kind == "lift_off" for event in motion.events)
     taken = sum(event.energy for event in motion.events)
@@ -88,7 +88,7 @@ def _contact_words(motion: Motion) -> str:
 
 
 def _taken_words(motion: Motion, taken: float) -> str:
-    """Energy that impacts took, and by how much it changes with modes and steps."""
+    """Energy lost in impacts, and its change with modes and steps."""
     words = f"{taken:.3g} J"
     if taken and np.isfinite(motion.impacts_spread):
         words += f" ± {motion.impacts_spread:.2g} J"
@@ -131,7 +131,7 @@ def _cells(mode: Mode) -> list[str]:
         error = f"{mode.error_estimate:.1e}"
     frequency = ""
     damping = ""
-    # What does not swing has a rate and no frequency.
+    # Modes without oscillation have a rate and no frequency.
     if mode.oscillates:
         frequency = f"{mode.frequency:.8g}"
         damping = f"{mode.damping_ratio:.6g}"

@@ -21,7 +21,7 @@ def print_path(console: Console, path: EquilibriumPath, written: Sequence[Path])
     """Print the outcome, the events and the end, and the files that were written."""
     print_outcome(console, path.model.scene.title, path.message, good=path.converged)
     if len(path.factor):
-        # Of a rod whose tip is held another section is shown: its tip does not move.
+        # For a rod with a held tip another section is printed.
         abscissae = {name: path.section(name) for name in path.model.discrete.rods}
         stations = _stations(path, abscissae)
         console.print(_events_table(path, stations))
@@ -33,7 +33,7 @@ def print_path(console: Console, path: EquilibriumPath, written: Sequence[Path])
 def _merit_sentence(path: EquilibriumPath) -> str:
     changes = sum(event.contact is not None for event in path.events)
     parts = [f"{len(path.factor)} points"]
-    # A path with friction looks for none.
+    # Paths with friction have no search for events.
     if path.model.inputs.memory is None:
         parts.append(f"{len(path.events) - changes} limit points and bifurcations")
     if path.model.scene.touches_exactly:
@@ -48,10 +48,10 @@ class _Station:
     """The start of a path, an event or the end, as tables show it.
 
     Attributes:
-        kind: the word for the station.
-        factor: of the path at the station.
-        index: of the first point of the path behind the station.
-        positions: of the section of each rod that is shown, m, shape (3,) each.
+        kind: name of the station.
+        factor: factor of the path at the station.
+        index: index of the first point of the path after the station.
+        positions: position of the printed section of each rod, shape (3,), m.
     """
 
     kind: str
@@ -67,14 +67,14 @@ def _stations(path: EquilibriumPath, abscissae: Mapping[str, float]) -> list[_St
     stations = [_Station("start", factors[0], 0, [positions[0] for positions in along])]
     for event in path.events:
         positions = [path.event_position(event, X, name) for name, X in abscissae.items()]
-        # An event lies between two points; beyond the last one there is none to judge.
+        # An event lies between two points; after the last point there is no stability.
         stations.append(_Station(_event_kind(event), event.factor, min(event.position, last), positions))
     stations.append(_Station("end", factors[last], last, [positions[-1] for positions in along]))
     return stations
 
 
 def _events_table(path: EquilibriumPath, stations: Sequence[_Station]) -> Table:
-    """The start, the events and the end of a path, with the stability of the equilibria behind each."""
+    """Table of start, events and end of a path, with the stability after each."""
     table = table_of("point", "factor", escape(path.name), "beyond it", unbroken=("factor", "beyond it"))
     for station in stations:
         value = ", ".join(digits(np.ravel(path.value_at(station.factor), order="F")))
@@ -84,14 +84,14 @@ def _events_table(path: EquilibriumPath, stations: Sequence[_Station]) -> Table:
 
 
 def _positions_table(abscissae: Mapping[str, float], stations: Sequence[_Station]) -> Table:
-    """Where a section of each rod is at the start, the events and the end."""
+    """Table of the positions of a section of each rod at start, events and end."""
     table = table_of("factor", "section", right=("x, m", "y, m", "z, m"), unbroken=("factor",), fold=("section",))
     for station in stations:
         factor = _factor(station)
         for (name, X), position in zip(abscissae.items(), station.positions, strict=True):
             section = f"{name} tip" if X == 1.0 else f"{name} X = {X:.3g}"
             table.add_row(factor, escape(section), *digits(position))
-            # The factor stands on the line of the first rod.
+            # The factor is in the row of the first rod.
             factor = ""
     return table
 
@@ -114,7 +114,7 @@ def _event_kind(event: PathEvent) -> str:
 def _stability(path: EquilibriumPath, index: int) -> str:
     if path.stable is None or path.neutral is None:
         return "not judged"
-    # Neutral first: an equilibrium that can be moved on at no cost is called stable too.
+    # Neutral is tested first: neutral equilibria are flagged as stable too.
     if path.neutral[index]:
         return "neutral"
     if path.stable[index]:

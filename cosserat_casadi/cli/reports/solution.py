@@ -18,7 +18,7 @@ from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.results.facts import digits
 from cosserat_casadi.spelling import counted
 
-# Only named in signatures: what prints a solution needs no solver of inverse problems.
+# Only for annotations: printing a solution needs no inverse solver.
 if TYPE_CHECKING:
     from cosserat_casadi.control.inverse_result import Inverse
 
@@ -32,13 +32,13 @@ def print_solution(console: Console, solution: Solution, written: Sequence[Path]
 
 
 def _print_end(console: Console, solution: Equilibrium[Any], *, missed: bool = False) -> None:
-    """Print title and message; doubtful are equilibria that a rod leaves, errors too large, and targets missed."""
+    """Print title and message; doubtful are unstable equilibria, errors above the tolerance, and missed targets."""
     doubtful = missed or solution.stable is False or solution.within_tolerance is False
     print_outcome(console, solution.model.scene.title, solution.message, good=solution.converged, doubtful=doubtful)
 
 
 def _print_equilibrium(console: Console, solution: Solution, work: str, written: Sequence[Path]) -> None:
-    """Print rods, actuators and contacts, the figures of merit with the work that it took, and the files."""
+    """Print rods, actuators and contacts, figures of merit with the work, and files."""
     console.print(_rod_table(solution))
     if solution.model.scene.actuators:
         console.print(_actuator_table(solution))
@@ -53,7 +53,7 @@ def _print_equilibrium(console: Console, solution: Solution, work: str, written:
 
 
 def print_inverse(console: Console, inverse: Inverse, written: Sequence[Path]) -> None:
-    """Print the verdict, the inputs found, how far the targets are missed, then the equilibrium."""
+    """Print the outcome, the inputs found, the gaps to the targets, and the equilibrium."""
     _print_end(console, inverse.solution, missed=not inverse.met)
     inputs = table_of("input", "value found")
     for name, value in inverse.values.items():
@@ -68,7 +68,7 @@ def print_inverse(console: Console, inverse: Inverse, written: Sequence[Path]) -
     console.print(targets)
     if any(gap.position_error is not None for gap in inverse.gaps):
         console.print("± is the estimated error of the model that the gap was measured on.")
-    # The equilibrium was found by the optimiser: the solve that judges it has next to nothing left to do.
+    # The work is that of the optimiser: the final solve starts at its equilibrium and takes next to nothing.
     work = f"{counted(inverse.rounds, 'round')} of the optimiser from {counted(inverse.starts, 'start')}"
     if isinstance(inverse.solution, Solution):
         _print_equilibrium(console, inverse.solution, work, written)
@@ -82,7 +82,7 @@ def print_inverse(console: Console, inverse: Inverse, written: Sequence[Path]) -
 
 
 def _with_error(gap: float, error: float | None) -> str:
-    """A gap with the error of the model that it was measured on: it is not known more exactly."""
+    """A gap with the estimated error of the model."""
     return f"{gap:.3g}" if error is None else f"{gap:.3g} ± {error:.1g}"
 
 
@@ -107,7 +107,7 @@ def _rod_table(solution: Solution) -> Table:
 
 
 def _contact_table(solution: Solution) -> Table:
-    """Where rods touch obstacles, with the resultant on the rod in world axes; a row that says so where none does."""
+    """Table of contacts of rods with obstacles, with resultants on the rod in world axes; one row without contact."""
     table = table_of("obstacle or rod", "on", "contact", right=[f"force {axis}, N" for axis in "xyz"])
     for contact in solution.contacts:
         where = f"at X = {contact.start:.6g}"
@@ -137,7 +137,7 @@ def _actuator_table(solution: Solution) -> Table:
 
 
 def _joint_table(solution: Solution) -> Table:
-    """Efforts along joints, their angles or displacements, and the pushes of their stops, parts of the efforts."""
+    """Table of efforts and angles or displacements of joints, and efforts of stops, which are parts of the efforts."""
     states = {name: solution.joint(name) for name in solution.model.joint}
     stops = ["of stops"] if any("stop" in state for state in states.values()) else []
     table = table_of("joint", "effort", "at", *stops)
@@ -167,7 +167,7 @@ def _merit_sentence(solution: Solution, work: str) -> str:
 
 
 def _errors(solution: Solution) -> Iterator[str]:
-    """Estimated errors with markup: that which the tolerance binds beside it, the others alone."""
+    """Estimated errors with markup, with the tolerance for the error that it binds."""
     accuracy = solution.model.scene.accuracy
     estimates = (("tip error", solution.error_estimate), ("error over the whole shape", solution.shape_error_estimate))
     for number, (what, error) in enumerate(estimates):
@@ -176,7 +176,7 @@ def _errors(solution: Solution) -> Iterator[str]:
             yield f"estimated {what} {error_words(error, within, accuracy.tolerance)}"
     if solution.wrench_error_estimate is not None:
         yield f"of clamps' forces and moments {solution.wrench_error_estimate:.1e}, relative"
-    # Where nothing touches, a width moves nothing.
+    # Without contact a width has no effect.
     layer_error = solution.layer_error_estimate if solution.contacts else None
     if layer_error is not None:
         words = error_words(layer_error, None, accuracy.tolerance)

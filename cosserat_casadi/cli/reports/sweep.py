@@ -21,18 +21,18 @@ from cosserat_casadi.sweeps.sobol import SobolIndices
 from cosserat_casadi.sweeps.work import Shard
 
 ROUNDING = float(np.finfo(np.float64).eps)
-"""Difference of poses, over the length of the longest rod and in rad, that is below the last digit of numbers."""
+"""Negligible difference of poses: over the length of the longest rod, and in rad."""
 
 
 def print_sweep(console: Console, sweep: Sweep, output: Path, plot: Path | None, *, finished: bool) -> None:
-    """Print how the rows ended, their discretisation, the check of some rows, and the files.
+    """Print outcomes of rows, discretisation, check of some rows, and files.
 
     Args:
         console: where to print.
-        sweep: its results.
-        output: their file.
+        sweep: results of the sweep.
+        output: file of the results.
         plot: the figure, if one was drawn.
-        finished: whether the file held the sweep already, so that nothing was computed.
+        finished: whether the file had the finished sweep already, without computation.
     """
     record = sweep.record
     tolerance = record["tolerance"]
@@ -58,7 +58,7 @@ def print_sweep(console: Console, sweep: Sweep, output: Path, plot: Path | None,
 
 
 def print_stopped_sweep(console: Console, part: Path | None) -> None:
-    """Print which rows a stopped sweep has kept in its file."""
+    """Print the file with the finished rows of a stopped sweep."""
     if part is None or not part.exists():
         console.print("Stopped before any row was solved. Nothing was written.")
         return
@@ -70,14 +70,14 @@ def _print_finished(console: Console, output: Path) -> None:
 
 
 def print_shard(console: Console, shard: Shard, rows: int, output: Path, *, finished: bool) -> None:
-    """Print that a shard is done, and how all become one file.
+    """Print that a shard is finished, and how to merge all shards.
 
     Args:
         console: where to print.
-        shard: which one.
-        rows: of it.
+        shard: the shard.
+        rows: number of its rows.
         output: file of the results.
-        finished: whether that held the sweep already, so that nothing was computed.
+        finished: whether the file had the finished shard already, without computation.
     """
     if finished:
         _print_finished(console, output)
@@ -95,11 +95,11 @@ def _outcome_table(sweep: Sweep) -> Table:
 
 
 def _choice_sentence(chosen: dict[str, Any], tolerance: float) -> str:
-    """Sentence on the discretisation that rows were solved on, and how good it is where it was chosen."""
+    """Sentence on the discretisation of rows, with the error of a chosen one."""
     discretisation = chosen["discretisation"]
     if discretisation is None:
         return "Modes, nodes and rotation are as the scene fixes them; what it leaves open has its default."
-    # Rows without an equilibrium say nothing of the discretisation.
+    # Rows without an equilibrium do not count for the discretisation.
     count = len(chosen["rows"])
     sections = discretisation.get("sections")
     sums = f", layers summed at {sections} sections an element" if sections else ""
@@ -114,7 +114,7 @@ def _choice_sentence(chosen: dict[str, Any], tolerance: float) -> str:
 
 
 def _error_sentences(sweep: Sweep) -> Iterator[str]:
-    """How many converged rows miss the tolerance, and what to do; nothing where no row has an estimate."""
+    """Number of converged rows above the tolerance, and the remedy; empty without error estimates."""
     if ERROR not in sweep.found:
         return
     known, largest, row = sweep.worst
@@ -122,7 +122,7 @@ def _error_sentences(sweep: Sweep) -> Iterator[str]:
         return
     tolerance = sweep.record["tolerance"]
     missed = sweep.missed_count
-    # Counted from 1, as a user counts.
+    # Rows are numbered from 1 for users.
     error = f"Estimated error of {counted(known, 'converged row')} at most {largest:.1e} (row {1 + row})"
     if not sweep.tolerance_binds:
         yield f"{error}; the scene fixes what they are computed with, and asks for no tolerance."
@@ -148,11 +148,11 @@ def _check_sentences(checked: list[dict[str, Any]], tolerance: float) -> Iterato
     Args:
         checked: for each such row its number, counted from 0; the estimated error, the distance of its poses from the
             sweep's, None where Python found no equilibrium, and whether it is stable.
-        tolerance: of the scene.
+        tolerance: tolerance of the scene.
     """
     compared = [entry for entry in checked if entry["difference"] is not None]
     if compared:
-        # An error that could not be estimated counts as infinite.
+        # A missing error estimate counts as infinite.
         estimates = [math.inf if entry["error_estimate"] is None else entry["error_estimate"] for entry in compared]
         error = max(estimates)
         difference = max(entry["difference"] for entry in compared)
@@ -167,7 +167,7 @@ def _check_sentences(checked: list[dict[str, Any]], tolerance: float) -> Iterato
     differing = [entry for entry in compared if entry["difference"] > tolerance]
     if differing:
         yield f"[bold red]Python found another equilibrium for {_rows(differing)}.[/]"
-    # None is not unstable: loads without a potential are not judged.
+    # None, for loads without a potential, is not unstable.
     unstable = [entry for entry in compared if entry["stable"] is False]
     if unstable:
         yield (
@@ -177,7 +177,7 @@ def _check_sentences(checked: list[dict[str, Any]], tolerance: float) -> Iterato
 
 
 def _stability_sentences(sweep: Sweep) -> Iterator[str]:
-    """How many rows are stable, where each was judged."""
+    """Number of stable rows, if stability was computed."""
     if STABLE not in sweep.found:
         return
     stable = sweep[STABLE][sweep.converged]
@@ -189,7 +189,7 @@ def _stability_sentences(sweep: Sweep) -> Iterator[str]:
 
 
 def _rows(entries: list[dict[str, Any]]) -> str:
-    """Numbers of rows as a user counts them, from 1."""
+    """Numbers of rows, counted from 1."""
     numbers = [entry["row"] + 1 for entry in entries]
     return listed(numbers, "row")
 
@@ -199,7 +199,7 @@ def _within(error: float, tolerance: float) -> str:
 
 
 def print_sobol(console: Console, indices: SobolIndices) -> None:
-    """Print the indices of every result, and the draws that they leave out."""
+    """Print the indices of every result, and the number of omitted draws."""
     table = table_of("result", "input", "first (95 %)", "total (95 %)", unbroken=["result", "input"])
     constant = []
     for name, found in indices.results.items():

@@ -22,7 +22,7 @@ from cosserat_casadi.tubes.tube_solve import FEWEST_STEPS, model_of
 
 
 def print_tubes(console: Console, solution: Equilibrium[Any] | TubeEquilibria, written: Sequence[Path]) -> None:
-    """Print an equilibrium, or all at the same inputs, and the files that were written."""
+    """Print an equilibrium, or all at the same inputs, and the written files."""
     if isinstance(solution, TubeEquilibria):
         _print_equilibria(console, solution)
     else:
@@ -61,7 +61,7 @@ def print_tubes_export(console: Console, solution: TubeSolution, folder: Path) -
 
 
 def _print_equilibria(console: Console, equilibria: TubeEquilibria) -> None:
-    """Print how the search ended, and a line for each equilibrium."""
+    """Print the outcome of the search, and a line for each equilibrium."""
     print_outcome(console, equilibria.robot.scene.title, equilibria.message, good=equilibria.complete)
     table = table_of("", "stable", "energy, J", "determinant", "angles at the tips, rad", "tip position, m")
     for number, solution in enumerate(equilibria.solutions, 1):
@@ -92,7 +92,7 @@ def print_tube_path(console: Console, path: TubePath, written: Sequence[Path]) -
 
 
 def print_tubes_check(console: Console, robot: Robot) -> None:
-    """Print what a valid scene of tubes holds."""
+    """Print the contents of a valid scene of tubes."""
     console.print(f"{title_line(robot.scene.title)}: the scene is valid.")
     table = table_of("tube", "EI, N m²", "GJ, N m²", "curvature, 1/m", "straight, m", "curved, m")
     for index, name in enumerate(robot.names):

@@ -1,4 +1,4 @@
-"""Contacts that may hold in place of others, known by their places alone."""
+"""Contacts to try in place of others, chosen by the places of contact alone."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ NEAR = 0.03
 """Distance along the rod within which a penetration belongs to a contact."""
 
 LIES_FROM = 0.8
-"""Where a rod that lies down from its tip on is first thought to begin to."""
+"""First guess of the start of the line along which a rod lies down to its tip."""
 
 ACROSS = 0.05
-"""Distance beyond a section with a load at which contact is tried when it would slide past."""
+"""Distance beyond a section with a load at which a contact that would slide past the section is tried."""
 
 MET = 4e-3
-"""Distance below which a place has run into a section with a load, the tip or another place."""
+"""Distance below which a place of contact counts as having met a section with a load, the tip or another place."""
 
 BEYOND = 0.01
-"""Distance beyond a section at which a place that has run into it is tried next."""
+"""Distance beyond a section at which a place that has met the section is tried next."""
 
 LONGER = 2.0 + 3.0**0.5
-"""Ratio of the lengths on both sides of a moment over which a heavy straight beam rises from a plane."""
+"""Ratio of the lengths by which a heavy straight beam rises from a plane on both sides of a moment."""
 
 
 def instead_of_pulling(touch: Touch) -> Iterator[tuple[Touch, ...]]:
@@ -43,12 +43,12 @@ def instead_of_pulling(touch: Touch) -> Iterator[tuple[Touch, ...]]:
     yield (first,)
     yield (last,)
     if touch.reaches_tip:
-        # A rod that curls up leaves before its tip.
+        # A rod that curls up leaves the obstacle before its tip.
         yield (replace(touch, end=touch.start + 0.7 * (touch.end - touch.start)),)
 
 
 def _across(state: ContactState, sections: Mapping[str, Sequence[float]]) -> Iterator[ContactState]:
-    """Contacts with one place moved to the other side of a section with a load next to it, the nearest first."""
+    """States with one place moved to the other side of an adjacent section with a load, the nearest first."""
     crossings: list[tuple[float, ContactState]] = []
     places = state.places
     rods = [touch.owner for touch in state.touches for _ in touch.moving]
@@ -66,7 +66,7 @@ def _across(state: ContactState, sections: Mapping[str, Sequence[float]]) -> Ite
 
 
 def otherwise(state: ContactState, sections: Mapping[str, Sequence[float]]) -> Iterator[ContactState]:
-    """States beside one whose equations have no solution near by."""
+    """States to try instead of a state whose equations have no solution nearby."""
     yield from _across(state, sections)
     for index, touch in enumerate(state.touches):
         rest = [other for i, other in enumerate(state.touches) if i != index]
@@ -82,10 +82,10 @@ def otherwise(state: ContactState, sections: Mapping[str, Sequence[float]]) -> I
 
 
 def met(state: ContactState, sections: Mapping[str, Sequence[float]]) -> Iterator[ContactState]:
-    """States after places of contact have run into each other, the tip or a load: joined, ended or beyond it.
+    """States after places of contact have met each other, the tip or a load: joined, ended or moved beyond the load.
 
     Args:
-        state: with the places where a solve gave up.
+        state: the contacts, with the places at which a solve stopped.
         sections: abscissae of each rod at which loads act, by name.
     """
     of_rods = [touch for touch in state.touches if not touch.of_body]
@@ -95,7 +95,7 @@ def met(state: ContactState, sections: Mapping[str, Sequence[float]]) -> Iterato
             yield _with(state, {first: Touch.line(first.obstacle, first.owner, first.start, second.end), second: None})
             for section in sections[first.owner]:
                 if first.is_line and second.is_line and first.end < section < second.start:
-                    # What a moment lifts is longer on one side of it than on the other.
+                    # A moment lifts a longer stretch on one side than on the other.
                     for before, after in ((BEYOND, LONGER * BEYOND), (LONGER * BEYOND, BEYOND)):
                         opened = replace(first, end=section - before), replace(second, start=section + after)
                         yield _with(state, dict(zip((first, second), opened, strict=True)))
@@ -114,6 +114,6 @@ def met(state: ContactState, sections: Mapping[str, Sequence[float]]) -> Iterato
 
 
 def _with(state: ContactState, changes: Mapping[Touch, Touch | None]) -> ContactState:
-    """The state with some contacts replaced; by None where they go."""
+    """The state with some contacts replaced, or removed if replaced by None."""
     touches = [changes.get(touch, touch) for touch in state.touches]
     return ContactState.of([touch for touch in touches if touch is not None])

@@ -1,4 +1,4 @@
-"""The error of an answer in exact contact: its distance to one with more modes and intervals, and its depth."""
+"""The error of an answer in exact contact: its distance from an answer with more modes and intervals, and its depth."""
 
 from __future__ import annotations
 
@@ -21,20 +21,20 @@ from cosserat_casadi.numerics.newton import NewtonSettings
 
 
 def with_error_in_contact(solution: Solution, newton: NewtonSettings) -> Solution:
-    """A solution in contact with the estimates of its errors, told; as it is where it is no equilibrium."""
+    """A solution in contact with estimates of its errors and notes on them; unchanged if it is not an equilibrium."""
     if not solution.converged:
         return solution
     return with_notes(estimated_in_contact(solution, newton))
 
 
 def estimated_in_contact(solution: Solution, newton: NewtonSettings | None = None) -> Solution:
-    """An equilibrium in contact with the estimates of its errors, its message as it is.
+    """An equilibrium in contact with the estimates of its errors and an unchanged message.
 
-    Places and forces of contact are unknowns that the sweeps of answers without contact do not have: the same contacts
-    are solved on the richer modes, from this solution.
+    Places and forces of contact are unknowns, which the sweeps of answers without contact do not have. So the contacts
+    of this solution are solved again on the richer modes.
 
     Args:
-        solution: of a scene with obstacles.
+        solution: a solution of a scene with obstacles.
         newton: limits of the solve.
     """
     model = solution.model
@@ -45,7 +45,7 @@ def estimated_in_contact(solution: Solution, newton: NewtonSettings | None = Non
 
 
 def beside_finer(solution: Solution, finer: Solution) -> Solution:
-    """A solution with the error that a finer one gives it, which is not known where others touch there."""
+    """A solution with its error by a finer one, which is unknown if the contacts of the two differ."""
     if finer.converged and _extents(solution).keys() == _extents(finer).keys():
         return with_contact_error(solution, finer)
     return replace(solution, error_estimate=UNKNOWN, shape_error_estimate=UNKNOWN)
@@ -61,12 +61,12 @@ def same_contacts(first: Solution, second: Solution) -> bool:
 
 
 def with_contact_error(coarse: Solution, fine: Solution) -> Solution:
-    """A solution with its distance to a finer one, the largest over poses, places of contact and forces.
+    """A solution with its distance from a finer one as the error, the largest over poses, places of contact and forces.
 
-    Forces count over EI/ℓ² or over the largest force, whichever is more. Of contacts that are not alike the whole
-    force is compared, and where they begin and end. Depth of the finer one in obstacles, and pull, count too: in the
-    same contacts neither solution tells of other contacts that should be there. Nothing is known where the modes of the
-    finer one are blind to what loads roll up.
+    Forces are relative to EI/ℓ² or the largest force, whichever is larger. Contacts of different kinds are compared by
+    their total force, start and end. Depth in obstacles and pull of the finer solution count too: two solutions with
+    the same contacts do not show that further contacts are missing. The error is unknown if the finer modes cannot
+    resolve the waves in rolled-up elements.
     """
     both = Richer(coarse.model.discrete, fine.model.discrete)
     if TurnedElements(both).hide_waves(coarse.x, fine.x[~both.known]):
@@ -99,7 +99,7 @@ def with_contact_error(coarse: Solution, fine: Solution) -> Solution:
 
 
 def _extents(solution: Solution) -> dict[tuple[str, str, bool], tuple[float, float, FloatArray]]:
-    """First and last abscissa at which each rod, or body, touches each obstacle, and the whole force, N."""
+    """First and last abscissa at which each rod, or body, touches each obstacle, and the total force, N."""
     extents: dict[tuple[str, str, bool], tuple[float, float, FloatArray]] = {}
     for touch in solution.contacts:
         owner = touch.owner, touch.obstacle, touch.of_body

@@ -1,12 +1,12 @@
 """Equations of rods and bodies in known contact: balance, no gap where they touch, no slope where contact moves.
 
 Unknowns are z = (x, f, p): the unknowns of the model, the forces of the contacts, and the abscissae of contact that
-are not at the tip. A point of contact gives d(r) = ρ and, where it may move, dd/dX = ρ′; a line gives both at
-its ends, and the moments of d − ρ with the polynomials of its force. Where a load acts inside a line its force per
-length is split: the section takes a point force and gives d(r) = ρ. A body is a ball: it gives d(r) = ρ. Elements
-end at p and move with it, so that every field is smooth inside an element and the accuracy of the polynomials is kept.
-Parameters of the scene are arguments of the equations as its inputs are: small changes of both move z as
-∂g/∂z dz = −∂g/∂inputs d inputs − ∂g/∂θ dθ while the contacts stay. See docs/contact.md.
+are not at the tip. A point of contact gives d(r) = ρ and, if it may move, dd/dX = ρ′; a line gives both at its ends,
+and the moments of d − ρ with the polynomials of its force. A load inside a line splits its force per length: the
+section of the load has a point force and gives d(r) = ρ. A body is a ball, which gives d(r) = ρ. Elements end at p and
+move with it, so that every field is smooth inside an element and the accuracy of the polynomials is kept. Parameters of
+the scene are arguments of the equations as its inputs are: small changes of both move z as ∂g/∂z dz = −∂g/∂inputs d
+inputs − ∂g/∂θ dθ while the contacts stay. See docs/contact.md.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ from cosserat_casadi.numerics.newton import Equations
 from cosserat_casadi.rod.discretisation import Discretisation
 
 FIT = 1e-3
-"""Singular values, relative to the largest, below which a first guess of forces does without them."""
+"""Singular values, relative to the largest, below which a first guess of forces leaves them out."""
 
 TORSION = 2
 """Index of the torsion among the strains: bendings come before it."""
@@ -53,20 +53,20 @@ TORSION = 2
 
 @dataclass(frozen=True)
 class Grids:
-    """Modes, nodes and rotation integrator of the elements of every rod, wherever elements end.
+    """Modes, nodes and rotation integrator of the elements of every rod, without the element ends.
 
     Attributes:
-        rods: by name; their own breaks are not read.
+        rods: discretisation of each rod, by name. Its breaks are ignored.
     """
 
     rods: Mapping[str, Discretisation]
 
     def discretisation(self, scene: scenes.Scene) -> dict[str, Discretisation]:
-        """Discretisation of every rod of a scene, by name, with elements that end where its loads say."""
+        """Discretisation of every rod of a scene, by name, with the element ends that its loads ask for."""
         return {name: replace(own, breaks=element_ends(scene, name)) for name, own in self.rods.items()}
 
     def bending_modes(self, scene: scenes.Scene) -> dict[str, int]:
-        """Polynomials that all curvatures of each rod have at least, by name."""
+        """Least number of polynomials over the curvatures of each rod, by name."""
         fewest = {}
         for rod in scene.rods:
             modes = self.rods[rod.name].modes
@@ -76,11 +76,11 @@ class Grids:
 
 
 def richer(grids: Grids, scene: scenes.Scene) -> Grids:
-    """The grids on which the error of an answer shows.
+    """The grids with modes and intervals added, on which the error of an answer is estimated.
 
     Args:
-        grids: of the answer.
-        scene: without contacts.
+        grids: grids of the answer.
+        scene: the scene without contacts.
     """
     rods = {}
     for name, rod in grids.rods.items():
@@ -91,10 +91,10 @@ def richer(grids: Grids, scene: scenes.Scene) -> Grids:
 
 @dataclass(frozen=True)
 class Placed:
-    """A model whose elements end at the contacts of a state.
+    """A model with element ends at the contacts of a state.
 
     Attributes:
-        model: of the scene with the forces of the contacts as inputs.
+        model: model of the scene with the forces of the contacts as inputs.
         state: the contacts.
         given: stacked inputs of the scene without contacts.
         modes: polynomials of the curvature of each rod, by name.
@@ -133,7 +133,7 @@ class Placed:
 
     @cached_property
     def _spread(self) -> tuple[FloatArray, FloatArray]:
-        """Matrices from the inputs of the scene to all inputs, shape (m, m − k), and from the forces, (m, k)."""
+        """Matrices to all m inputs from the inputs of the scene, shape (m, m − k), and from the k forces, (m, k)."""
         size = self.model.inputs.size
         others = np.setdiff1d(np.arange(size), self.force_entries)
         by_given = np.zeros((size, len(others)))
@@ -147,7 +147,7 @@ class Placed:
         return self.inputs_moved(self.given, forces)
 
     def inputs_moved(self, given: FloatArray, forces: FloatArray) -> FloatArray:
-        """Stacked inputs of the model for other inputs of the scene and other forces, or for m columns of changes."""
+        """Stacked inputs of the model for other inputs of the scene and other forces, or for columns of changes."""
         by_given, by_forces = self._spread
         return np.asarray(by_given @ given + by_forces @ forces)
 
@@ -165,16 +165,16 @@ class Placed:
 
     @cached_property
     def gaps(self) -> ca.Function:
-        """(x, inputs) ↦ what the contacts ask to be zero, without unit, and its derivative with x."""
+        """(x, inputs) ↦ dimensionless residual of the contacts, and its derivative by x."""
         x, inputs, gaps = self._written_gaps
         return ca.Function("gaps", [x, inputs], [gaps, ca.jacobian(gaps, x)])
 
     @cached_property
     def gaps_by_inputs(self) -> ca.Function:
-        """(x, inputs) ↦ its derivative with the inputs, of which some move bases; forces of contacts move none."""
+        """(x, inputs) ↦ derivative of the contacts' residual by the inputs; columns of forces of contacts are zero."""
         x, inputs, gaps = self._written_gaps
         by_inputs = ca.jacobian(gaps, inputs)
-        # By less than rounding surfaces give way.
+        # The compliance of surfaces is below rounding.
         by_inputs[:, self.force_entries] = 0
         return ca.Function("gaps_by_inputs", [x, inputs], [by_inputs])
 
@@ -183,7 +183,7 @@ class Placed:
         x = ca.MX.sym("x", self.model.size)
         inputs = ca.MX.sym("inputs", self.model.inputs.size)
         system = System(self.model.discrete, Arguments(x, inputs))
-        # A column is named, for no entries of a single input are a row to CasADi.
+        # The column is named, since CasADi takes an empty selection of a single input for a row.
         forces = inputs[self.force_entries, 0] / self.force_units
         return x, inputs, gap_rows(system, self.state, self.modes, forces)
 
@@ -197,10 +197,10 @@ class Written:
     """The equations of a state as expressions.
 
     Attributes:
-        unknowns: symbols of x, f and p; parameters of the scene stand behind the places in the last.
+        unknowns: symbols of x, f and p; in p the parameters of the scene follow the places.
         given: symbol of the stacked inputs of the scene without contacts.
         state: the contacts, at expressions of p.
-        system: rods whose elements end there.
+        system: rods with element ends at the contacts.
         modes: polynomials of the curvature of each rod, by name.
     """
 
@@ -225,12 +225,12 @@ class Written:
 
     @property
     def residual(self) -> Matrix:
-        """Balance, then gaps."""
+        """Residual of the balance, then of the gaps."""
         return ca.vertcat(self._balance.residual, self._gaps)
 
     @property
     def jacobian(self) -> Matrix:
-        """Derivative of the residual with the unknowns; the balance's with x is written out, contacts add little."""
+        """Derivative of the residual by the unknowns; it has the balance's written Jacobian, contacts add little."""
         _, f, p = self.unknowns
         balance = self._balance.residual
         by_forces = ca.jacobian(balance, f)
@@ -240,13 +240,13 @@ class Written:
         return ca.vertcat(of_balance, ca.horzcat(self._gaps_by_unknowns(by_forces), *gaps_by_others))
 
     def _gaps_by_unknowns(self, by_forces: Matrix) -> Matrix:
-        """Derivative of the gaps with x. A force does work on its gap alone: the gap's derivative with x is its pull.
+        """Derivative of the gaps by x: the generalised force of a gap's force, which does work on this gap alone.
 
         Args:
-            by_forces: derivative of the balance with the forces.
+            by_forces: derivative of the balance by the forces.
         """
         x, _, _ = self.unknowns
-        # The balance of a frame is not in the unit of that of a rod, and parameters change no unit.
+        # The balance of a frame has another unit than a rod's; parameters do not change units.
         if self.system.discrete.frames or self.system.discrete.parameters.entries:
             return ca.jacobian(self._gaps, x)
         rows: list[Matrix] = [ca.MX(0, x.shape[0])]
@@ -262,17 +262,17 @@ class Written:
 
 @dataclass(frozen=True)
 class BehindPlaces(ParameterLayout):
-    """Parameters of a scene behind the places of its contacts, which move elements as parameters do.
+    """Layout of the places of contact, which move elements as parameters do, followed by the scene's parameters.
 
     Attributes:
-        places: their number.
+        places: number of places.
     """
 
     places: int = 0
 
     @cached_property
     def size(self) -> int:
-        """Places and entries of the parameters."""
+        """Number of places and of entries of the parameters."""
         return self.places + sum(entry.size for entry in self.entries)
 
 
@@ -282,9 +282,9 @@ class ContactEquations:
 
     Attributes:
         scene: the scene without contacts.
-        given: its stacked inputs.
+        given: stacked inputs of the scene.
         grids: modes and nodes of every element.
-        state: the contacts, at the places that the equations start from.
+        state: the contacts, at the places from which the equations start.
         theta: values of the parameters that the scene names.
     """
 
@@ -295,20 +295,20 @@ class ContactEquations:
     theta: FloatArray = field(default_factory=lambda: np.zeros(0))
 
     def at(self, given: FloatArray, theta: FloatArray) -> ContactEquations:
-        """These equations, with functions that are written once, for other inputs and parameters."""
-        # What all of them share is written before it is handed on.
+        """These equations for other inputs and parameters, with the same functions."""
+        # The shared functions are written before the copy takes them.
         assert self._functions and self._by_arguments and self.parameters is not None
         other = replace(self, given=given, theta=theta)
         vars(other).update({name: value for name, value in vars(self).items() if name not in ("given", "theta")})
         return other
 
     def placed(self, state: ContactState, given: FloatArray | None = None) -> Placed:
-        """The model of the contacts at known places, with other inputs of the scene if there are any."""
+        """The model of the contacts at known places, for the inputs ``given`` or else those of the equations."""
         modes = self.grids.bending_modes(self.scene)
         loaded = with_contacts(self.scene.baked(), state, modes)
         model = build(loaded, self.grids.discretisation(loaded))
         if self.parameters.size:
-            # Unknowns keep their units, those of the scene's own numbers.
+            # Unknowns keep the units of the scene's own numbers.
             scene = self.parameters.set_in(self.scene, self.parameters.unpack(self.theta))
             state = self._with_seams(state, scene)
             model = Model(with_numbers(model.discrete, with_contacts(scene, state, modes)))
@@ -321,12 +321,12 @@ class ContactEquations:
 
     @cached_property
     def nominal(self) -> Placed:
-        """The model that the equations start from, whose elements the places of contact move."""
+        """The model at the first places of contact; other places move its elements."""
         return replace(self, scene=self.scene.baked()).placed(self.state)
 
     @cached_property
     def slope_rows(self) -> list[int]:
-        """Rows of the residual that ask for no slope, one for each place that is sought."""
+        """Rows of the residual with the slopes of gaps, one for each unknown place."""
         widths = force_widths(self.state, self.nominal.modes)
         return [self.nominal.model.size + number for number, width in enumerate(widths) if width is None]
 
@@ -349,13 +349,13 @@ class ContactEquations:
 
     @cached_property
     def _moving(self) -> tuple[Model, ContactState]:
-        """The model whose parameters are the places of contact, then the scene's; and contacts at these places."""
+        """The model with places of contact and the scene's parameters as parameters; contacts at these places."""
         count = len(self.state.places)
         parameters = BehindPlaces(self.parameters.entries, self.parameters.moving, count)
         p = parameters.symbol
         if not p.shape[0]:
             return self.nominal.model, self.state
-        # One expression for each place: what ends there is found by it.
+        # One expression for each place, by which elements and loads that end there are identified.
         state = self.state.at([p[i] for i in range(count)])
         scene = self.parameters.written(self.scene.baked(), p[count:])
         state = self._with_seams(state, scene)
@@ -363,7 +363,7 @@ class ContactEquations:
         return Model(with_numbers(self.nominal.model.discrete, written, parameters)), state
 
     def _with_seams(self, state: ContactState, scene: scenes.Scene) -> ContactState:
-        """Contacts whose seams are where a scene with other numbers, or expressions, has what acts there."""
+        """Contacts with seams at the loads of a scene with other numbers, or expressions."""
         places = {}
         for own in self.parameters.moving:
             pairs = zip(places_on(self.scene, own.rod), places_on(scene, own.rod), strict=True)
@@ -372,37 +372,37 @@ class ContactEquations:
 
     @property
     def model(self) -> Model:
-        """The model whose parameters are the places of contact, then the scene's: what measures rods."""
+        """The model whose parameters are the places of contact, then the scene's; it gives poses and fields."""
         return self._moving[0]
 
     def arguments(self, z: FloatArray, given: FloatArray | None = None) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Unknowns, stacked inputs and parameters of :attr:`model`, with other inputs of the scene if there are any."""
+        """Unknowns, stacked inputs and parameters of :attr:`model`, for the inputs ``given`` or else the equations'."""
         x, f, places = self.parts(z)
         inputs = self.nominal.inputs_moved(self.given if given is None else given, f)
         return x, inputs, np.concatenate([places, self.theta])
 
     @cached_property
     def _functions(self) -> tuple[ca.Function, ca.Function]:
-        """(x, f, p, inputs) ↦ residual, and ↦ its derivative with x, f and p."""
+        """(x, f, p, inputs) ↦ residual, and ↦ its derivative by x, f and p."""
         written = self.written
         residual = ca.Function("residual", written.arguments, [written.residual])
         return residual, ca.Function("jacobian", written.arguments, [written.jacobian])
 
     @cached_property
     def _by_arguments(self) -> ca.Function:
-        """(x, f, p, inputs) ↦ derivative of the residual with the inputs."""
+        """(x, f, p, inputs) ↦ derivative of the residual by the inputs."""
         written = self.written
         return ca.Function("by_inputs", written.arguments, [ca.jacobian(written.residual, written.given)])
 
     def ends(self, rod: str, p: FloatArray) -> FloatArray:
-        """Where the elements of a rod end at places of contact p, shape (E + 1,)."""
+        """Element ends of a rod for places of contact p, shape (E + 1,)."""
         breaks = self.nominal.model.discretisation[rod].breaks
         moved = self.state.at(p.tolist())
         places = dict(zip(self._places_on(self.state, rod), self._places_on(moved, rod), strict=True))
         return np.array([places.get(end, end) for end in breaks])
 
     def in_order(self, p: FloatArray) -> bool:
-        """Whether the elements of all rods, which places of contact and parameters move, follow each other."""
+        """Whether the ends of the elements of all rods, which places and parameters move, ascend."""
         widths = [np.diff(self.ends(rod, p)).min() for rod in self.grids.rods]
         for own in self.parameters.moving:
             moved = own.ends(self.theta).full()[:, 0].tolist()
@@ -416,15 +416,15 @@ class ContactEquations:
         return [float(end) for touch in state.along(rod) for end in touch.carriers]
 
     def moved_strains(self, p: FloatArray) -> FloatArray:
-        """Factors that take the unknowns of elements at rest to the unknowns of elements moved to p, shape (n,).
+        """Factors from the unknowns of unmoved elements to the unknowns of elements moved to p, shape (n,).
 
-        Strains of moved elements are counted per length that has moved; all other unknowns keep their values.
+        Strains of moved elements count per moved length; all other unknowns keep their values.
         """
         return self._widths(p) / self.nominal_widths
 
     @cached_property
     def nominal_widths(self) -> FloatArray:
-        """Width of the element that each strain coordinate is of, where the equations start from; else 1, (n,)."""
+        """Width of the unmoved element of each strain coordinate, 1 for other unknowns, shape (n,)."""
         return self._widths(self.state.places)
 
     def _widths(self, p: FloatArray) -> FloatArray:
@@ -439,23 +439,23 @@ class ContactEquations:
         return widths
 
     def residual(self, z: FloatArray, given: FloatArray) -> FloatArray:
-        """Balance and gaps for inputs; not a number where elements would not follow each other along the rod."""
+        """Residual of balance and gaps for inputs; NaN if element ends would not ascend along a rod."""
         x, f, p = self.parts(z)
         if not self.in_order(p):
             return np.full(len(z), np.nan)
         return column(self._functions[0](x, f, np.concatenate([p, self.theta]), given))
 
     def _derivatives(self, z: FloatArray, given: FloatArray) -> FloatArray:
-        """Derivatives of the residual with z, then with the parameters of the scene."""
+        """Derivatives of the residual by z, then by the parameters of the scene."""
         x, f, p = self.parts(z)
         return np.asarray(self._functions[1](x, f, np.concatenate([p, self.theta]), given).full())
 
     def jacobian(self, z: FloatArray, given: FloatArray) -> FloatArray:
-        """Derivative of the residual with z."""
+        """Derivative of the residual by z."""
         return self._derivatives(z, given)[:, : len(z)]
 
     def by_inputs(self, z: FloatArray, given: FloatArray) -> FloatArray:
-        """Derivative of the residual with the inputs, shape (len(z), inputs)."""
+        """Derivative of the residual by the inputs, shape (len(z), inputs)."""
         x, f, p = self.parts(z)
         return np.asarray(self._by_arguments(x, f, np.concatenate([p, self.theta]), given).full())
 
@@ -467,15 +467,15 @@ class ContactEquations:
         return np.asarray(rate)
 
     def moved(self, z: FloatArray, by_inputs: FloatArray, by_parameters: FloatArray) -> FloatArray:
-        """Derivatives of the solution z with m arguments of the scene while its contacts stay, (len(z), m).
+        """Derivatives of the solution z by m arguments of the scene while its contacts stay, shape (len(z), m).
 
         Args:
             z: the solution at the inputs and parameters of these equations.
-            by_inputs: derivatives of the inputs with the arguments, shape (inputs, m).
-            by_parameters: of the parameters, shape (parameters, m).
+            by_inputs: derivatives of the inputs by the arguments, shape (inputs, m).
+            by_parameters: derivatives of the parameters, shape (parameters, m).
 
         Returns:
-            NaN where the equations are singular.
+            derivatives; NaN if the equations are singular.
         """
         derivatives = self._derivatives(z, self.given)
         pushed = self.by_inputs(z, self.given) @ by_inputs + derivatives[:, len(z) :] @ by_parameters
@@ -483,23 +483,23 @@ class ContactEquations:
         return np.full(pushed.shape, np.nan) if moved is None else moved
 
     def arguments_moved(self, by_z: FloatArray, by_inputs: FloatArray, by_parameters: FloatArray) -> FloatArray:
-        """Derivatives of all arguments of :attr:`model`, one stacked behind the other, with m arguments of the scene.
+        """Derivatives of all stacked arguments of :attr:`model` by m arguments of the scene.
 
         Args:
             by_z: derivatives of z, shape (len(z), m).
-            by_inputs: of the inputs of the scene, shape (inputs, m).
-            by_parameters: of its parameters, shape (parameters, m).
+            by_inputs: derivatives of the inputs of the scene, shape (inputs, m).
+            by_parameters: derivatives of its parameters, shape (parameters, m).
         """
         x, f, places = np.split(by_z, np.cumsum([self.nominal.model.size, len(self.nominal.force_units)]))
         inputs = self.nominal.inputs_moved(by_inputs, f)
         return np.vstack([x, inputs, places, by_parameters])
 
     def start_near(self, near: Solution) -> FloatArray:
-        """A shape near the solution with the forces that balance it best, shape (n + k + p,)."""
+        """Start z from a shape near the solution, with the forces that balance it best, shape (n + k + p,)."""
         return self.start_from(projected(near, self.nominal.model), self.given)
 
     def start_from(self, x: FloatArray, given: FloatArray) -> FloatArray:
-        """A shape with the forces that balance it best, at the places of the state: the balance is linear in them.
+        """Start z from a shape, with the forces that balance it best; the balance is linear in the forces.
 
         Args:
             x: unknowns of the nominal model, shape (n,).
@@ -520,5 +520,5 @@ class ContactEquations:
 
     @property
     def equations(self) -> Equations:
-        """The equations as Newton's method takes them: residual and Jacobian of z."""
+        """The equations for Newton's method: residual and Jacobian as functions of z."""
         return Equations(lambda z: self.residual(z, self.given), lambda z: self.jacobian(z, self.given))

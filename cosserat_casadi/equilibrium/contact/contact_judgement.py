@@ -1,9 +1,9 @@
-"""The solution of contacts that hold: its residual, its contacts by name, and its stability.
+"""Conversion of a solved state of contact to a solution: its residual, its contacts by name, and its stability.
 
 Contacts that press are constraints, and the curvature of the gap times their force is in the Jacobian already: their
-forces have the energy −N d. The place of a point of contact follows the motion; it moves so that the gap is least, and
-of the second variation of −N min d the part N (∂d′/∂x)² / d″ is left to add. (E. Polak, *Optimization*, Springer 1997,
-section 3.1, for the least value over a parameter.)
+forces have the energy −N d. The place of a point of contact follows the motion; it stays at the least gap, which adds N
+(∂d′/∂x)² / d″, the other part of the second variation of −N min d. (E. Polak, *Optimization*, Springer 1997, section
+3.1, for the least value over a parameter.)
 """
 
 from __future__ import annotations
@@ -33,16 +33,16 @@ FLAT = 1e-6
 """Curvature of the gap, relative to the length, below which a point of contact does not slide."""
 
 PRESSING = 1e-9
-"""Force, relative to the largest, from which a contact is a constraint."""
+"""Force, relative to the largest, above which a contact counts as a constraint."""
 
 
 def judged(found: ContactEquilibrium, *, holds: bool, iterations: int, tolerance: float) -> Solution:
-    """A state as a solution.
+    """A solved state as a solution.
 
     Args:
-        found: the state, solved.
+        found: the solved state.
         holds: whether no force pulls and nothing is inside an obstacle.
-        iterations: Newton steps that it took to find it.
+        iterations: Newton steps of the search.
         tolerance: bound on the relative norm of the residual.
     """
     residual = found.placed.residual(found.x, found.forces)
@@ -81,7 +81,7 @@ def contacts_of(found: ContactEquilibrium) -> tuple[Contact, ...]:
         unit = found.placed.model.discrete.contact_unit(touch.owner, of_body=touch.of_body)
         obstacle = found.placed.obstacle(touch.obstacle)
         zero = PRESSING * found.largest_force
-        # What only rounding pulls does not pull.
+        # A pull that is rounding alone counts as zero.
         forces = unit * np.where((carried < 0.0) & (carried > -zero), 0.0, carried)
         if touch.of_body:
             normal = body_normal(found.solution, touch.owner, obstacle)[None, :]
@@ -101,7 +101,7 @@ def contacts_of(found: ContactEquilibrium) -> tuple[Contact, ...]:
                 ends=ends,
                 kind=touch.kind,
                 of_body=touch.of_body,
-                # Where loads have no jump of their own a section carries what the polynomials leave.
+                # A section where loads do not jump carries the remainder of the polynomials.
                 inside=tuple(own for own in sections if abs(own.force) > unit * zero),
             )
         )
@@ -120,7 +120,7 @@ def _resultant(
         along = legendre_polynomials(len(own), (X - start) / (end - start)) @ own
         normal = normals(found.solution, touch.owner, obstacle, X)
         total += (grid.weights[nodes] * along) @ normal
-    # Forces per length act on the length that an input or a parameter gives the rod; their unit is of the scene's.
+    # Forces per length act on the length of the rod by an input or a parameter; their unit is by the scene's length.
     return found.placed.model.length_ratio(touch.owner, found.solution.inputs) * total
 
 
@@ -130,18 +130,18 @@ class Pressing:
 
     Attributes:
         held: rows of the gaps that stay zero, in their order.
-        sliding: by the row of the slope of a point that slides, N / d″ in the unit of each balance, shape (n,).
+        sliding: N / d″ in the unit of each balance, shape (n,), by the row of the slope of each sliding point.
     """
 
     held: list[int]
     sliding: Mapping[int, FloatArray]
 
     def stiffness(self, by_x: FloatArray, by_others: FloatArray) -> FloatArray:
-        """The part of the derivative of the balance with m arguments that sliding adds, shape (n, m).
+        """Term of sliding points in the derivative of the balance by m arguments, shape (n, m).
 
         Args:
-            by_x: derivative of all gap rows with the unknowns, shape (rows, n).
-            by_others: with the arguments, shape (rows, m).
+            by_x: derivative of all gap rows by the unknowns, shape (rows, n).
+            by_others: derivative of all gap rows by the arguments, shape (rows, m).
         """
         added = np.zeros((by_x.shape[1], by_others.shape[1]))
         for row, weights in self.sliding.items():
@@ -150,7 +150,7 @@ class Pressing:
 
 
 def pressing(found: ContactEquilibrium) -> Pressing:
-    """The rows of a state that small variations keep, and the points that slide meanwhile."""
+    """Gap rows that stay zero in small variations of a state, and points that slide."""
     model = found.placed.model
     held: list[int] = []
     sliding = {}
@@ -170,14 +170,14 @@ def pressing(found: ContactEquilibrium) -> Pressing:
             if bend <= FLAT:
                 held.append(rows[1])
             else:
-                # Every row of the Jacobian is in a unit of its own.
+                # Each row of the Jacobian has its own unit.
                 unit = model.discrete.rods[touch.owner].energy_unit / model.discrete.unknowns.units
                 sliding[rows[1]] = carried[0] / bend * unit
     return Pressing(held, sliding)
 
 
 def _eigenvalues(found: ContactEquilibrium) -> FloatArray:
-    """Eigenvalues of the second variation over the motions that contacts admit."""
+    """Eigenvalues of the second variation over the variations that contacts admit."""
     model = found.placed.model
     inputs = found.solution.inputs
     rows = found.placed.gaps(found.x, inputs)[1].full()
@@ -193,11 +193,11 @@ def _gap_curvature(found: ContactEquilibrium, touch: Touch) -> float:
     model = found.placed.model
     length = model.length(touch.owner, found.solution.inputs)
     tangent = length * pose.rotation @ strain[3:]
-    # The rate of the extension is along the tangent, on which the normal stands.
+    # The rate of the extension is along the tangent, normal to the obstacle's normal.
     bend = length**2 * pose.rotation @ np.cross(strain[:3], strain[3:])
     obstacle = found.placed.obstacle(touch.obstacle)
     (position,) = seen_positions(found.solution, obstacle, pose.position[None])
     first, second = seen_directions(found.solution, obstacle, np.array([tangent, bend]))
     distance = distance_along(obstacle, position, first, second)
-    # Gaps are told over the length that the rod has in the scene.
+    # Gaps are relative to the length of the rod in the scene.
     return distance.bend / model.discrete.rods[touch.owner].properties.length

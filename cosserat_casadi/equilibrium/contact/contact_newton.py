@@ -1,10 +1,10 @@
-"""Newton's method for rods in contact whose places are sought.
+"""Newton's method for rods in contact at unknown places.
 
-Forces of a short stretch hardly tell on the shape, so that a large error of theirs is a large residual although the
-shape is near the solution: the residual is no measure of progress. Full steps are taken instead, from places that are
-held first, with shape and forces in balance there; a step is shortened only where it would squeeze an element. Steps
-end where they are no larger than rounding, and not at a given residual: forces of a short stretch are known worse than
-the shape by the cube of its length, and whether a force presses or pulls is read from its sign.
+Forces on a short stretch hardly affect the shape, so that their errors make a large residual although the shape is near
+the solution: the residual is no measure of progress. Full steps are taken instead, after a first solve of shape and
+forces with fixed places; a step is shortened only if it would squeeze an element. Steps end where they are no larger
+than rounding, and not at a given residual: forces on a short stretch are less accurate than the shape by the cube of
+its length, and the sign of a force tells whether it presses or pulls.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from cosserat_casadi.numerics.broyden import solved
 from cosserat_casadi.numerics.newton import NewtonSettings, relative_norm
 
 HELD_STEPS = 6
-"""Most steps with the places held."""
+"""Most steps with fixed places."""
 
 HELD_ENOUGH = 1e-6
-"""Residual at which the places are let go."""
+"""Residual below which the places are released."""
 
 MOST_STEPS = 25
-"""Most steps with places that are sought."""
+"""Most steps with unknown places."""
 
 SQUEEZED = 0.5
 """Share of its width that an element may lose in a step."""
@@ -33,15 +33,15 @@ COLLAPSED = 1e-4
 
 
 def sought(equations: ContactEquations, start: FloatArray, settings: NewtonSettings) -> tuple[FloatArray, bool, int]:
-    """Shape, forces and places from a start.
+    """Solve for shape, forces and places from a start.
 
     Args:
-        equations: of one state.
+        equations: equations of one state.
         start: z, shape (n,).
-        settings: of these the tolerance counts; steps end at rounding, not at the aim.
+        settings: settings, of which only the tolerance counts; steps end at rounding, not at the aim.
 
     Returns:
-        the last z, whether it solves the equations, and the steps that were taken.
+        the last z, whether it solves the equations, and the number of steps.
     """
     z, taken = _held(equations, start)
     if z is None:
@@ -54,7 +54,7 @@ def sought(equations: ContactEquations, start: FloatArray, settings: NewtonSetti
         if not np.isfinite(norm):
             break
         if least <= settings.tolerance and norm >= 0.5 * least:
-            # Nothing but rounding is left.
+            # Only rounding is left.
             break
         best = z
         least = norm
@@ -69,7 +69,7 @@ def sought(equations: ContactEquations, start: FloatArray, settings: NewtonSetti
 
 
 def _held(equations: ContactEquations, start: FloatArray) -> tuple[FloatArray | None, int]:
-    """Shape and forces in balance with contacts at the places of the start, that may have a slope there."""
+    """Shape and forces in equilibrium with contacts at fixed places, without the condition on the slope."""
     count = len(equations.state.places)
     size = len(start)
     known = np.arange(size - count)
@@ -96,7 +96,7 @@ def _widths(equations: ContactEquations, z: FloatArray) -> FloatArray:
 
 
 def _share(equations: ContactEquations, z: FloatArray, step: FloatArray) -> float:
-    """Share of a step at which no element has lost too much of its width."""
+    """Largest share of a step in which no element loses too much of its width."""
     before = _widths(equations, z)
     lost = (before - _widths(equations, z + step)) / before
     return float(min(1.0, SQUEEZED / max(lost.max(), SQUEEZED)))

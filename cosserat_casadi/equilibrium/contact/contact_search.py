@@ -1,8 +1,8 @@
-"""Contacts that hold, from a first guess of the contacts: states are tried until one has no fault.
+"""Search for the contacts that hold, from a first guess: states are tried until one has no fault.
 
-A state is at fault where a force pulls, or a section or a body is inside an obstacle; the fault says which states to
-try next. States that were tried are remembered and their number is bounded, so that the search ends; where it ends
-without a state that holds, it says so. See docs/contact.md.
+A state is at fault where a force pulls, or a section or a body is inside an obstacle; the fault suggests which states
+to try next. Tried states are remembered and their number is bounded, so that the search ends; a search that ends
+without a state that holds reports this. See docs/contact.md.
 """
 
 from __future__ import annotations
@@ -48,36 +48,36 @@ MOST_STATES = 24
 """Most states that are tried."""
 
 ROUNDING = 1e-12
-"""Force, relative to the largest, that is zero."""
+"""Force, relative to the largest, that counts as zero."""
 
 AT_TIP = 1e-3
-"""Distance from the tip within which it is the tip that touches."""
+"""Distance from the tip within which a contact counts as one of the tip."""
 
 OPENING = 0.3
-"""Share of the way to the nearer end of a line over which it is first thought to open inside."""
+"""Share of the distance to the nearer end of a line, first guess of the stretch that opens inside the line."""
 
 SHORT = 0.1
-"""Length of a line beside a section that is lifted, below which a point may be left of it."""
+"""Length of a line beside a lifted section below which a point may remain of it."""
 
 ALIKE = 0.05
-"""Places of contact that differ by less make the same attempt."""
+"""Difference of places of contact below which two states are the same attempt."""
 
 SHALLOW = 1e-12
 """Depth, relative to the length, that is rounding beside a point of contact."""
 
 SAMPLES = np.linspace(0.0, 1.0, 41)
-"""Places along a stretch at which its force per length is looked at."""
+"""Number of places along a stretch at which its force per length is evaluated."""
 
 
 @dataclass(frozen=True)
 class ContactEquilibrium:
-    """A state whose equations are solved.
+    """A state with a solution of its equations.
 
     Attributes:
-        placed: the model with elements that end at the contacts.
+        placed: the model with element ends at the contacts.
         x: unknowns.
         forces: forces of the contacts, without unit.
-        solution: this equilibrium as a solution, not judged yet.
+        solution: this equilibrium as a solution that is not judged yet.
     """
 
     placed: Placed
@@ -109,15 +109,15 @@ class ContactEquilibrium:
         return largest
 
     def pulls(self) -> Iterator[tuple[Touch, float]]:
-        """How much each contact would have to pull at most, relative to the largest force; 0 for one that does not."""
+        """Largest pull of each contact, relative to the largest force; 0 for a contact that only pushes."""
         for touch, carried, line in self.parts():
             least = min(float(carried.min()), self._least_along(touch, line))
             yield touch, max(-least, 0.0) / self.largest_force
 
     def pushes(self) -> Iterator[tuple[Touch, float]]:
-        """How much each contact pushes where it would open first, relative to the largest force.
+        """Least push of each contact, where it would open first, relative to the largest force.
 
-        At the tip and inside a line sections may carry nothing.
+        Forces at the tip and at sections inside a line may be zero and do not count.
         """
         for touch, carried, line in self.parts():
             opens = carried.tolist()
@@ -126,7 +126,7 @@ class ContactEquilibrium:
             yield touch, min([*opens, self._least_along(touch, line)]) / self.largest_force
 
     def _least_along(self, touch: Touch, line: FloatArray) -> float:
-        """Least force per length of a line, over the whole of it, without unit; infinite for a point."""
+        """Least force per length of a line times its length, without unit; infinite for a point."""
         if not touch.is_line:
             return inf
         _, pressure = self.pressure(touch, line)
@@ -138,7 +138,7 @@ class ContactEquilibrium:
         return pressure_along(touch, line, self.placed.modes[touch.owner])
 
     def weakest(self, touch: Touch) -> float:
-        """Abscissa at which a line presses least, or pulls most; of sections too."""
+        """Abscissa at which a line presses least, or pulls most, sections with forces included."""
         for other, carried, line in self.parts():
             if other != touch:
                 continue
@@ -149,7 +149,7 @@ class ContactEquilibrium:
         raise ValueError("no contact of this state")
 
     def risen(self, touch: Touch, section: float) -> float:
-        """Length of rod that rises on either side of a section that pulls; 0 where no section does.
+        """Length of rod that rises on either side of a section that pulls; 0 if the section does not pull.
 
         A load P raises a heavy straight beam of the weight q per length from a plane over 3P/4q on either side.
         """
@@ -179,18 +179,18 @@ class ContactEquilibrium:
                 yield Penetrated(body.name, obstacle.name, 0.0, 0.0, 0.0, -gap, of_body=True)
 
     def _beside_contacts(self, rod: str) -> FloatArray:
-        """Abscissae close to the places of contact, where a rod that lies on starts to enter."""
+        """Abscissae close to the places of contact, where a rod starts to enter the obstacle beyond a line."""
         beside = np.concatenate([-np.geomspace(1e-4, 2e-2, 12), np.geomspace(1e-4, 2e-2, 12)])
         ends = [end for touch in self.state.along(rod) for end in touch.ends]
         X = (np.array(ends)[:, None] + beside).ravel() if ends else np.zeros(0)
         return X[(X > 0.0) & (X < 1.0)]
 
     def unmet(self) -> float:
-        """How far poses, places and forces may be off because contacts hold up to a tolerance alone.
+        """Bound on the error of poses, places and forces because contacts hold only to a tolerance.
 
-        A stretch inside an obstacle, where points stand for a line of contact, has the error of its depth and of the
-        angle at which it enters, which turns all that is beyond it; points beside it would be a line that begins and
-        ends where it does. What pulls should not be there. Along lines the rod is as deep as its modes leave it.
+        A stretch inside an obstacle has the error of its depth and of the angle at which it enters, which turns the rod
+        beyond it. If points approximate a line of contact there, they should be at the ends of the stretch. A contact
+        that pulls has its force as error. The depth along a line is an error of the modes.
         """
         off = [0.0, *(pull * self.largest_force for _, pull in self.pulls())]
         for penetrated in self.penetrations(SHALLOW):
@@ -206,7 +206,7 @@ class ContactEquilibrium:
 
 @dataclass(frozen=True)
 class Penetrated:
-    """A stretch of a rod that is inside an obstacle; or a body.
+    """A stretch of a rod, or a body, that is inside an obstacle.
 
     Attributes:
         owner: name of the rod, or of the body, that is inside.
@@ -215,7 +215,7 @@ class Penetrated:
         end: abscissa of its last section.
         deepest: abscissa of the section that is deepest inside.
         depth: depth of that section, over the length of the rod.
-        angle: largest angle between the rod and the obstacle, rad; 0 of a body.
+        angle: largest angle between the rod and the obstacle, rad; 0 for a body.
         of_body: whether it is a body.
     """
 
@@ -229,16 +229,16 @@ class Penetrated:
     of_body: bool = False
 
     def joined(self, other: Penetrated) -> Penetrated:
-        """This stretch and another as one, from the start of the first to the end of the last."""
+        """The union of this stretch and another, from the start of the first to the end of the last."""
         deeper = self if self.depth >= other.depth else other
         return replace(deeper, start=min(self.start, other.start), end=max(self.end, other.end))
 
     def concerns(self, touch: Touch) -> bool:
-        """Whether a contact is of the same rod, or body, with the same obstacle."""
+        """Whether a contact has the rod, or body, and the obstacle of this stretch."""
         return (touch.owner, touch.obstacle, touch.of_body) == (self.owner, self.obstacle, self.of_body)
 
     def is_at(self, touch: Touch) -> bool:
-        """Whether the stretch begins or ends at a contact."""
+        """Whether the stretch is next to a contact."""
         return bool(self.concerns(touch) and touch.start - NEAR <= self.end and self.start <= touch.end + NEAR)
 
     def is_along(self, touch: Touch) -> bool:
@@ -257,7 +257,7 @@ class Settling:
         newton: limits of the solve of each state.
         tolerance: depth and pull, relative, up to which a state holds.
         iterations: Newton steps so far.
-        squeezed: the contacts of the last state that was not solved, where its places were last; None of none.
+        squeezed: the contacts of the last state that was not solved, at their last places; None if all were solved.
     """
 
     scene: scenes.Scene
@@ -279,8 +279,8 @@ class Settling:
         """Try states until one holds.
 
         Args:
-            guesses: the first ones, the likeliest first, each with a shape to start from.
-            admits: whether the rods may have come to a shape; Newton's method may lead behind an obstacle.
+            guesses: the first states, the likeliest first, each with a shape to start from.
+            admits: whether the rods can have reached a shape; Newton's method may lead behind an obstacle.
 
         Returns:
             the state that holds, or the last one that was solved; whether it holds.
@@ -298,7 +298,7 @@ class Settling:
             tried.append(candidate)
             found = self.solve(candidate, start)
             if found is None:
-                # Where places have run into something the state beyond it is the likeliest.
+                # After places have met something the state beyond it is the likeliest.
                 beyond = [] if self.squeezed is None else list(met(self.squeezed, self.sections))
                 waiting = [(other, start) for other in beyond] + waiting
                 waiting += [(other, start) for other in otherwise(candidate, self.sections)]
@@ -309,12 +309,12 @@ class Settling:
             last = found
             if not others:
                 return found, True
-            # What follows from a state that was solved comes before what was only thought of.
+            # States that follow from a solved state come before guesses.
             waiting = [(other, found.solution) for other in others] + waiting
         return last, False
 
     def _alike(self, first: ContactState, second: ContactState) -> bool:
-        """Whether two states are the same attempt; beside a section with a load small differences make another."""
+        """Whether two states are the same attempt; beside a section with a load small differences matter."""
         if first.signature != second.signature or any(
             one.seams != other.seams for one, other in zip(first.touches, second.touches, strict=True)
         ):
@@ -327,7 +327,7 @@ class Settling:
         return bool(np.all(np.abs(first.places - second.places) < np.minimum(ALIKE, np.array(beside) / 2)))
 
     def solve(self, state: ContactState, near: Solution) -> ContactEquilibrium | None:
-        """Solve the equations of one state from a shape near it; None where Newton's method does not end."""
+        """Solve the equations of one state from a nearby shape; None if Newton's method does not converge."""
         equations = ContactEquations(self.scene, self.given, self.grids, state)
         z = self.solved(equations, near)
         if z is None:
@@ -335,18 +335,18 @@ class Settling:
         found = contact_equilibrium(equations, z, self.given)
         if self.squeezed is None:
             return found
-        # A small residual leaves forces of a stretch open: places that have gone far are sought from where they are.
+        # A small residual does not determine forces of a stretch: places that moved far are solved for again.
         beside = ContactEquations(self.scene, self.given, self.grids, found.state)
         z, solved, taken = sought(beside, beside.start_near(found.solution), self.newton)
         self.iterations += taken
         return contact_equilibrium(beside, z, self.given) if solved else found
 
     def solved(self, equations: ContactEquations, near: Solution) -> FloatArray | None:
-        """Unknowns, forces and places that solve equations, from a shape near them."""
+        """Unknowns, forces and places that solve equations, from a nearby shape."""
         return self.solved_from(equations, equations.start_near(near))
 
     def solved_from(self, equations: ContactEquations, start: FloatArray) -> FloatArray | None:
-        """Unknowns, forces and places that solve equations, from a start z; None where none are found."""
+        """Unknowns, forces and places that solve equations, from a start z; None if the solve fails."""
         self.squeezed = None
         if len(equations.state.places):
             z, solved, taken = sought(equations, start, self.newton)
@@ -365,7 +365,7 @@ class Settling:
 def contact_equilibrium(equations: ContactEquations, z: FloatArray, given: FloatArray) -> ContactEquilibrium:
     """The solution z of the equations of a state, for stacked inputs of its scene."""
     x, forces, places = equations.parts(z)
-    # What only rounding presses does not press.
+    # A force that is rounding alone counts as zero.
     forces = np.where(np.abs(forces) <= ROUNDING * np.abs(forces).max(initial=0.0), 0.0, forces)
     placed = equations.placed(equations.state.at(places.tolist()), given)
     x = x / equations.moved_strains(places)
@@ -413,8 +413,8 @@ class Replacement:
     """States of one contact that may replace a contact that is at fault.
 
     Attributes:
-        touch: the contact; None where a stretch is inside an obstacle that no contact is at.
-        options: the contacts that may be there instead, the likeliest first.
+        touch: the contact; None for a stretch inside an obstacle away from all contacts.
+        options: contacts to try in its place, the likeliest first.
     """
 
     touch: Touch | None
@@ -422,24 +422,24 @@ class Replacement:
 
 
 def next_states(found: ContactEquilibrium, tolerance: float) -> Iterator[ContactState]:
-    """States to try instead of one that is at fault, the likeliest first; none for one that holds."""
+    """States to try instead of a state at fault, the likeliest first; none for a state that holds."""
     pulling = [touch for touch, pull in found.pulls() if pull > tolerance]
     changes = [Replacement(touch, tuple(_where_it_opens(found, touch))) for touch in pulling]
     for penetrated, touch in _by_touch(found, tolerance):
-        # No change of the state mends what is inside a line.
+        # No change of the state mends a depth inside a line.
         if touch is not None and penetrated.is_along(touch):
             continue
         if touch not in pulling:
             changes.append(Replacement(touch, tuple(_instead_of_entering(penetrated, touch))))
     changed = [change.touch for change in changes]
     for touch in found.state.touches:
-        # Where a base lies on the obstacle already only rounding says where the line begins.
+        # If the base lies on the obstacle only rounding decides where the line begins.
         beside_base = touch.is_line and not touch.starts_at_base and touch.start < NEAR
         if beside_base and touch not in changed and _lies_at_base(found.solution, touch):
             changes.append(Replacement(touch, ((replace(touch, start=BASE),),)))
     if not changes:
         return
-    # All that is at fault is changed at once; then each in another way.
+    # All contacts at fault are changed at once, then each in another way.
     likeliest = [(change.touch, change.options[0]) for change in changes]
     yield _changed(found.state, likeliest)
     for index, change in enumerate(changes):
@@ -453,7 +453,7 @@ def _lies_at_base(solution: Solution, touch: Touch) -> bool:
 
 
 def _by_touch(found: ContactEquilibrium, tolerance: float) -> list[tuple[Penetrated, Touch | None]]:
-    """Stretches inside an obstacle, each with the contact that it is at; those on both sides of one contact joined."""
+    """Stretches inside an obstacle, each with its adjacent contact; stretches on both sides of one are joined."""
     alone: list[tuple[Penetrated, Touch | None]] = []
     joined: dict[Touch, Penetrated] = {}
     for penetrated in found.penetrations(tolerance):
@@ -466,7 +466,7 @@ def _by_touch(found: ContactEquilibrium, tolerance: float) -> list[tuple[Penetra
 
 
 def _changed(state: ContactState, changes: Sequence[tuple[Touch | None, tuple[Touch, ...]]]) -> ContactState:
-    """The state with some contacts replaced by others; None replaces no contact."""
+    """The state with some contacts replaced by others; None adds contacts without a replacement."""
     replaced = {old for old, _ in changes}
     kept = [touch for touch in state.touches if touch not in replaced]
     added = [touch for _, new in changes for touch in new]
@@ -474,9 +474,9 @@ def _changed(state: ContactState, changes: Sequence[tuple[Touch | None, tuple[To
 
 
 def _where_it_opens(found: ContactEquilibrium, touch: Touch) -> Iterator[tuple[Touch, ...]]:
-    """Contacts that may take the place of one that pulls; of a line that is lifted in its middle first two."""
+    """Contacts to try instead of one that pulls; first two lines for a line that is lifted in its middle."""
     if touch.is_line:
-        # Forces that push bear no moment: a line opens at the section that it acts on, wherever it pulls most.
+        # Pushing forces cannot balance a moment: a line opens at the section of the moment, wherever it pulls most.
         for lifted in dict.fromkeys([found.weakest(touch), *touch.seams]):
             reach = found.risen(touch, lifted)
             if 0.0 < reach < min(lifted - touch.start, touch.end - lifted):
@@ -486,12 +486,12 @@ def _where_it_opens(found: ContactEquilibrium, touch: Touch) -> Iterator[tuple[T
 
 
 def _sides(touch: Touch, lifted: float, reach: float) -> tuple[Touch, Touch]:
-    """The lines on both sides of a section around which a line rises over a reach."""
+    """The two lines on both sides of a section, if the line between rises over a reach to each side."""
     return replace(touch, end=lifted - reach, seams=()), replace(touch, start=lifted + reach, seams=())
 
 
 def _opened(touch: Touch, lifted: float) -> Iterator[tuple[Touch, ...]]:
-    """Both sides of a line that rises around a section inside it; a short side is a point, or left out."""
+    """Both sides of a line that rises around a section inside it; a short side becomes a point, or is left out."""
     before = lifted - touch.start
     after = touch.end - lifted
     if not before > 0.0 < after:
@@ -501,7 +501,7 @@ def _opened(touch: Touch, lifted: float) -> Iterator[tuple[Touch, ...]]:
     if parts:
         yield tuple(parts)
     if min(before, after) < SHORT <= max(before, after):
-        # What rises may be longer than the short side, of which a point is left.
+        # The risen stretch may be longer than the short side, of which a point remains.
         if before < after:
             short, start, end = touch.start, lifted + NEAR, touch.end
         else:
@@ -512,7 +512,7 @@ def _opened(touch: Touch, lifted: float) -> Iterator[tuple[Touch, ...]]:
 
 
 def _instead_of_entering(penetrated: Penetrated, touch: Touch | None) -> Iterator[tuple[Touch, ...]]:
-    """Contacts that hold a stretch outside of an obstacle, alone or in place of the contact beside it."""
+    """Contacts that keep a stretch out of an obstacle, additional ones or instead of the adjacent contact."""
     if penetrated.of_body:
         yield (Touch.ball(penetrated.obstacle, penetrated.owner),)
         return
@@ -528,7 +528,7 @@ def _instead_of_entering(penetrated: Penetrated, touch: Touch | None) -> Iterato
         yield (line,)
         yield (touch, point)
     elif touch.end == TIP:
-        # A tip that lifts off leaves a section inwards to carry the rod, or the rod lies down.
+        # If a tip lifts off, a section further inwards touches, or the rod lies down.
         inwards = Touch.point(penetrated.obstacle, penetrated.owner, min(here, TIP - 2 * NEAR))
         yield (inwards,)
         yield (line,)

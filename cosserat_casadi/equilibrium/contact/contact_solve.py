@@ -1,9 +1,9 @@
 """Equilibrium of a scene with obstacles, on given modes and nodes.
 
-Cushions tell where contact is, and more sharply once they are raised under each node until rods lie on the obstacles. A
-cushion gives way, and where it does a line of contact and a point close by look the same. Raised by what pressed it in,
-again and again, it holds the nodes at the surface itself, with the same pressure: the augmented Lagrangian method (M.
-R. Hestenes, J. Optim. Theory Appl. 4 (1969) 303) on the nodes of coarse elements.
+Cushions show where contact is, and more sharply once they are raised under each node until rods lie on the obstacles. A
+cushion gives way, so that a line of contact and a point nearby look alike. Raised again and again by its own
+depression, it holds the nodes at the surface itself, with the same pressure: the augmented Lagrangian method (M. R.
+Hestenes, J. Optim. Theory Appl. 4 (1969) 303) on the nodes of coarse elements.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ from cosserat_casadi.scene.load_records import LoadRecord
 from cosserat_casadi.scene.obstacle_records import ObstacleRecord
 
 ROUNDS = 12
-"""Times that cushions are raised."""
+"""Number of rounds in which cushions are raised."""
 
 STIFFENINGS = 4
 """Rounds from the first one in which cushions are made stiffer as well."""
@@ -56,19 +56,19 @@ STIFFER = 4.0
 """Factor on the stiffness of cushions in such a round."""
 
 LINE = 0.06
-"""Stretch of nodes that are held from which a line of contact is tried before a point."""
+"""Length of a stretch of held nodes above which a line of contact is tried before a point."""
 
 APART = 0.1
-"""Distance of two stretches of held nodes on one obstacle below which they may be one."""
+"""Distance of two stretches of held nodes on one obstacle below which they may belong to one line."""
 
 LEAST_TOLERANCE = 1e-9
-"""Depth and pull, relative, below which rounding decides."""
+"""Relative depth and pull that may be rounding."""
 
 STAYING = 0.9
-"""Share of the error that contacts left on coarser modes, from which on more modes do not mend it."""
+"""Ratio to the error that contacts left on coarser modes above which more modes do not mend the error."""
 
 BESIDE_JOINT = 0.15
-"""Distance from the joint of two rods, of a stretch that soft cushions hold off, within which it lies on both."""
+"""Distance from the joint of two rods within which a stretch on soft cushions may lie on both rods."""
 
 
 def solve_contact(
@@ -85,15 +85,15 @@ def solve_contact(
     """Find the contacts of a scene and its equilibrium.
 
     Args:
-        scene: with obstacles; parameters have values.
+        scene: scene with obstacles, with values for its parameters.
         grids: modes and nodes of every element.
         values: inputs by name.
-        start: a solution of the same rods and obstacles whose contacts are tried first, where that takes no rod through
-            an obstacle; by default, and else, contacts of the unloaded rods under growing loads.
+        start: a solution of the same rods and obstacles. Its contacts are tried first, unless that takes a rod through
+            an obstacle; otherwise, and by default, contacts of the unloaded rods under growing loads.
         contacts: contacts that are tried first from the start; by default the contacts of the start.
         newton: limits of the solve of each state.
-        progress: told the share of the load path that is done.
-        unmet_before: error that contacts left on coarser modes; where more modes mend it, contacts that hold to the
+        progress: receives the share of the load path that is done.
+        unmet_before: error that contacts left on coarser modes; if more modes mend it, contacts that hold to the
             tolerance are enough.
     """
     bare = without_contacts(scene)
@@ -108,7 +108,7 @@ def solve_contact(
     cushioned = approach(bare, values, progress)
     settling.iterations += cushioned.iterations
     first = first_state(cushioned)
-    # Where thin bars cut through their cushions before the loads are full, the contacts there may hold all the same.
+    # If thin bars cut through their cushions before the full load, the contacts there may still hold.
     guesses = _guesses(cushioned, first) if cushioned.converged else [(first, cushioned)]
     found, holds = _held(
         settling,
@@ -133,9 +133,9 @@ def solve_contact(
 def settled_near(
     settling: Settling, start: Solution, contacts: ContactState | None = None, unmet_before: float = 0.0
 ) -> ContactEquilibrium | None:
-    """The equilibrium to which contacts lead, from the shape of a solution; by default the contacts of the solution.
+    """The equilibrium with contacts that hold, from the shape and the contacts of a solution, or other contacts.
 
-    None where none holds, or rods would pass through. See :func:`solve_contact`.
+    None if no contacts hold, or rods would pass through an obstacle. See :func:`solve_contact`.
     """
     state = state_in(start.model.scene) if contacts is None else contacts
     found, holds = _held(
@@ -153,12 +153,11 @@ def _held(
     admits: Callable[[Solution], bool],
     unmet_before: float,
 ) -> tuple[ContactEquilibrium | None, bool]:
-    """Contacts that hold to the tolerance, as :meth:`Settling.run` finds them.
+    """Contacts that hold to the tolerance, and whether they hold; see :meth:`Settling.run`.
 
-    Where points that enter an obstacle by less than the tolerance stand for a line the places of contact are further
-    off: the depth is as the square of that distance. Then contacts are looked for from there that hold more closely.
-    Beside the ends of a line few modes leave a depth too, which more modes lessen: where modes are fixed, richer ones
-    than those tell.
+    If points approximate a line and the rod enters the obstacle by less than the tolerance, places have a larger error:
+    the depth is in proportion to its square. Then contacts that hold more closely are sought from there. Few modes
+    leave a depth beside the ends of a line too, which more modes reduce: for fixed modes a solve on richer modes tells.
     """
     found, holds = settling.run(guesses, admits)
     if found is None or not holds:
@@ -175,7 +174,7 @@ def _held(
 
 
 def _more_modes_mend(settling: Settling, found: ContactEquilibrium, admits: Callable[[Solution], bool]) -> bool:
-    """Whether the same contacts hold on richer modes and leave less unmet there."""
+    """Whether the same contacts hold on richer modes with a smaller error :meth:`ContactEquilibrium.unmet`."""
     finer = replace(settling, grids=richer(settling.grids, settling.scene))
     more, holds = finer.run([(found.state, found.solution)], admits)
     settling.iterations = finer.iterations
@@ -185,12 +184,12 @@ def _more_modes_mend(settling: Settling, found: ContactEquilibrium, admits: Call
 
 
 def stays_unmet(found: ContactEquilibrium, before: float, tolerance: float) -> bool:
-    """Whether contacts leave more than a tolerance unmet, and as much as the contacts on coarser modes before."""
+    """Whether contacts have an error above a tolerance that is not below the error on coarser modes either."""
     return found.unmet() > max(tolerance, STAYING * before)
 
 
 def _guesses(cushioned: Solution, first: ContactState) -> list[tuple[ContactState, Solution]]:
-    """Contacts read off the cushions, each with the shape there; contacts that hold rods at the surface come first."""
+    """Guesses of contacts from the cushions, each with a shape; contacts of rods held at the surface come first."""
     rough = (first, cushioned)
     sharp = sharpened(cushioned)
     if sharp is None:
@@ -199,7 +198,7 @@ def _guesses(cushioned: Solution, first: ContactState) -> list[tuple[ContactStat
 
 
 def why_unsettled(scene: scenes.Scene, states: Iterable[ContactState]) -> str:
-    """A sentence on contact of a kind that the search does not know; nothing where there is none."""
+    """A sentence on contact of a kind that the search does not handle; empty without such contact."""
     for state in states:
         sentence = _over_joints(scene, state) or _on_two_obstacles(state)
         if sentence:
@@ -208,7 +207,7 @@ def why_unsettled(scene: scenes.Scene, states: Iterable[ContactState]) -> str:
 
 
 def _on_two_obstacles(state: ContactState) -> str:
-    """A sentence on a rod that touches two obstacles at one place; nothing where none does."""
+    """A sentence on a rod that touches two obstacles at one place; empty if none does."""
     of_rods = [touch for touch in state.touches if not touch.of_body]
     for first, second in combinations(of_rods, 2):
         same_rod = first.owner == second.owner
@@ -223,7 +222,7 @@ def _on_two_obstacles(state: ContactState) -> str:
 
 
 def _over_joints(scene: scenes.Scene, state: ContactState) -> str:
-    """A sentence on a stretch that lies on an obstacle on both sides of a joint; nothing where there is none."""
+    """A sentence on a stretch that lies on an obstacle on both sides of a joint; empty if there is none."""
     for first, second in continuations(scene).items():
         for before, after in product(state.along(first), state.along(second)):
             meets = before.end > TIP - BESIDE_JOINT and after.start < BESIDE_JOINT
@@ -241,8 +240,8 @@ class Sharpened:
 
     Attributes:
         shape: the equilibrium.
-        pressures: stretches of nodes that are held, rod by rod.
-        balls: contacts of bodies that are held.
+        pressures: stretches of held nodes, rod by rod.
+        balls: contacts of held bodies.
     """
 
     shape: Solution
@@ -251,13 +250,13 @@ class Sharpened:
 
 
 def sharpened(cushioned: Solution) -> Sharpened | None:
-    """Rods on cushions that hold their nodes at the surface of the obstacles, and what presses on them.
+    """Rods with nodes held by cushions at the surface of the obstacles, and the pressure on them.
 
     Args:
         cushioned: an equilibrium on cushions that give way.
 
     Returns:
-        shape and pressure; None where Newton's method does not end on the way.
+        shape and pressure; None if Newton's method fails in a round.
     """
     model = cushioned.model
     cushions = _cushions(model)
@@ -269,10 +268,10 @@ def sharpened(cushioned: Solution) -> Sharpened | None:
         for cushion in cushions:
             values[f"{cushion.name}.stiffness"] = factor * values[f"{cushion.name}.stiffness"]
             if cushion.rod is None:
-                # A body touches at one point: there is no line that it could be mistaken for.
+                # A body touches at one point, which cannot be mistaken for a line.
                 continue
             gaps = _nodal_gaps(solution, cushion.rod, cushion.obstacle)
-            # Pressure grows with the square of the depth: on a stiffer one the same pressure is less deep.
+            # Pressure grows with the square of the depth: a stiffer cushion needs less depth for the same pressure.
             raised[cushion.name] = np.maximum(raised[cushion.name] - gaps, 0.0) / np.sqrt(factor)
             values[f"{cushion.name}.raised"] = raised[cushion.name]
         inputs = model.pack(values)
@@ -316,7 +315,7 @@ def _balanced(model: Model, inputs: FloatArray, x: FloatArray) -> NewtonResult:
 
 
 def likely_states(held: Sharpened) -> list[ContactState]:
-    """The contacts that the pressure at the nodes looks like: stretch by stretch, and with those close by joined."""
+    """States that the pressure at the nodes suggests: a contact for each stretch, and with nearby stretches joined."""
     pressures = held.pressures
     joined: list[Pressure] = []
     for pressure in pressures:
@@ -336,7 +335,7 @@ def likely_states(held: Sharpened) -> list[ContactState]:
 
 
 def _touch(pressure: Pressure) -> Touch:
-    """The contact that a stretch of nodes looks like which are held."""
+    """The contact that a stretch of held nodes suggests."""
     start, end = float(pressure.X[0]), float(pressure.X[-1])
     if end - start > LINE:
         return Touch.line(pressure.obstacle, pressure.rod, start, end)

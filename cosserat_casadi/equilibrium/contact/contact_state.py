@@ -1,4 +1,4 @@
-"""Which sections touch which obstacles: discrete data, with the places of contact as numbers that are sought."""
+"""States of contact: which sections touch which obstacles, as discrete data, and the unknown places of contact."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ from cosserat_casadi.model.element_ends import element_ends
 from cosserat_casadi.model.system_functions import SystemFunctions
 
 Place = Any
-"""An abscissa X: a number, or an expression while it is sought."""
+"""An abscissa X: a number, or an expression of unknown places."""
 
 BASE = 0.0
-"""Abscissa from which a rod lies on an obstacle that its base lies on already: a line of contact there has no end."""
+"""Start of a line of contact of a rod whose base lies on the obstacle: the line has no unknown end there."""
 
 TIP = 1.0
-"""Abscissa of the section that contact cannot move beyond."""
+"""Abscissa of the tip, which contact cannot move beyond."""
 
 CLEAR = 1e-3
-"""Distance of a place from a section with a load below which it is sought from a place that far beside it."""
+"""Distance of a place from a section with a load below which its solve starts at this distance from the section."""
 
 SHORTEST = 1e-5
 """Least distance of places of contact from each other and from the base, relative to the length of the rod."""
@@ -37,7 +37,7 @@ SHORTEST = 1e-5
 
 @dataclass(frozen=True)
 class Touch:
-    """One contact of a rod with an obstacle, a point or a stretch that lies on it; or of a body, a ball.
+    """One contact with an obstacle: of a rod at a point or along a line, or of a body as a ball.
 
     Attributes:
         obstacle: name of the obstacle.
@@ -46,7 +46,7 @@ class Touch:
         end: abscissa at which it ends; ``start`` for a point.
         is_line: whether a stretch lies on the obstacle.
         of_body: whether it is a body that touches.
-        seams: abscissae inside a line where the force per length may jump, base to tip; they are not sought.
+        seams: known abscissae inside a line at which the force per length may jump, base to tip.
     """
 
     obstacle: str
@@ -59,7 +59,7 @@ class Touch:
 
     @classmethod
     def ball(cls, obstacle: str, body: str) -> Touch:
-        """Contact of a body, whose place on the obstacle follows from where it is."""
+        """Contact of a body; its place on the obstacle follows from the body's pose."""
         return cls(obstacle, body, 0.0, 0.0, of_body=True)
 
     @classmethod
@@ -79,21 +79,21 @@ class Touch:
 
     @property
     def moves(self) -> tuple[bool, ...]:
-        """Whether each of its ends is sought: all but the base of a line and the tip, none of a body."""
+        """Whether each end is an unknown place: all but the base and the tip, and no end of a body."""
         if self.of_body:
             return (False,)
         return tuple(is_symbolic(end) or BASE < end < TIP for end in self.ends)
 
     @property
     def moving(self) -> tuple[Place, ...]:
-        """The ends whose places are unknowns."""
+        """The ends with unknown places."""
         return tuple(end for end, moves in zip(self.ends, self.moves, strict=True) if moves)
 
     @property
     def carriers(self) -> tuple[Place, ...]:
-        """Abscissae of the forces at sections, base to tip: of the one point, or of both ends and the seams.
+        """Abscissae of the forces at sections, base to tip: the point, or both ends and the seams.
 
-        What presses on the base the clamp bears, and no rod.
+        A force on the base acts on the clamp, not on the rod, and is left out.
         """
         if not self.is_line:
             return (self.start,)
@@ -102,14 +102,14 @@ class Touch:
 
     @property
     def carriers_move(self) -> tuple[bool, ...]:
-        """Whether each of these is sought."""
+        """Whether each of the :attr:`carriers` is an unknown place."""
         seams = tuple(False for _ in self.seams)
         if self.starts_at_base:
             return (*seams, self.moves[-1])
         return (self.moves[0], *seams, *self.moves[1:])
 
     def sorted_forces(self, forces: FloatArray) -> tuple[tuple[float, ...], tuple[SectionForce, ...]]:
-        """Forces at sections as those at the ends, and those inside a line."""
+        """Split forces at sections into forces at the ends and forces inside a line."""
         if not self.is_line:
             return tuple(forces.tolist()), ()
         first, *inside, last = [0.0, *forces.tolist()] if self.starts_at_base else forces.tolist()
@@ -117,12 +117,12 @@ class Touch:
 
     @property
     def stretches(self) -> tuple[tuple[Place, Place], ...]:
-        """Start and end of each part of a line along which its force per length is smooth; none of a point."""
+        """Start and end of each part of a line with a smooth force per length; none for a point."""
         return tuple(pairwise((BASE, *self.carriers) if self.starts_at_base else self.carriers))
 
     @property
     def starts_at_base(self) -> bool:
-        """Whether the contact is a line that begins where the rod does."""
+        """Whether the contact is a line that begins at the base of the rod."""
         return self.is_line and not is_symbolic(self.start) and self.start == BASE
 
     @property
@@ -132,11 +132,11 @@ class Touch:
 
     @property
     def kind(self) -> str:
-        """The word of the result file."""
+        """Kind of contact in the words of the result file."""
         return "line" if self.is_line else "point"
 
     def moved(self, places: Sequence[Place]) -> Touch:
-        """This contact at other places, one for each place that is sought."""
+        """This contact at other places, one for each unknown place."""
         if self.of_body:
             return self
         ends = [*places, TIP]
@@ -146,7 +146,7 @@ class Touch:
         return replace(self, start=ends[0], end=ends[-1])
 
     def split(self, sections: Sequence[float]) -> Touch:
-        """This contact with seams at the sections that are inside it, and no place on a section.
+        """This contact with seams at the sections inside it, and places moved off the sections.
 
         Args:
             sections: abscissae at which loads make the shear force, or its rate, jump.
@@ -161,10 +161,10 @@ class Touch:
     def moment_counts(self, modes: int) -> tuple[int, ...]:
         """Number of polynomials of the force per length on each stretch.
 
-        In a stretch whose curvature has n polynomials the distance has n + 2. At its start distance and slope are
-        known: where the line begins as the conditions of a sought end or of the clamp, at a seam from the stretch
-        before. At its end a sought end takes two more, a seam or the tip the distance alone; with the rest all are
-        met, and none twice.
+        In a stretch whose curvature has n polynomials the distance has n + 2. Distance and slope at its start are
+        known: by the conditions of an unknown end or the clamp, or at a seam from the stretch before. At its end an
+        unknown place takes two more conditions, a seam or the tip the distance alone; the rest is the number of
+        polynomials, so that every condition is met once.
         """
         counts = []
         for moves in self.carriers_move[-len(self.stretches) :]:
@@ -177,7 +177,7 @@ class Touch:
         return sum(self.moment_counts(modes))
 
     def by_stretch(self, along: Columns, modes: int) -> Iterator[tuple[Place, Place, Columns]]:
-        """Start and end of each stretch, with its part of the coefficients of the force per length."""
+        """Start and end of each stretch, with its coefficients of the force per length."""
         first = 0
         for (start, end), count in zip(self.stretches, self.moment_counts(modes), strict=True):
             yield start, end, along[first : first + count]
@@ -185,7 +185,7 @@ class Touch:
 
 
 def _beside(place: float, sections: Sequence[float], way: float) -> float:
-    """A place, or one by a way beside a section on which it is."""
+    """A place; if it is on a section, moved off it by a given distance."""
     for section in sections:
         if abs(place - section) < CLEAR:
             return section + way
@@ -209,19 +209,19 @@ class ContactState:
 
     @property
     def signature(self) -> tuple[tuple[str, str, str, bool, bool, bool], ...]:
-        """The discrete part of the state: two states with the same signature differ in their places alone."""
+        """The discrete part of the state: states with equal signatures differ in their places alone."""
         return tuple(
             (touch.owner, touch.obstacle, touch.kind, touch.starts_at_base, touch.reaches_tip, touch.of_body)
             for touch in self.touches
         )
 
     def split(self, sections: Mapping[str, Sequence[float]]) -> ContactState:
-        """These contacts with seams at the sections of each rod, by name, that are inside them."""
+        """These contacts with seams at the sections, given for each rod by name, that are inside them."""
         touches = [touch if touch.of_body else touch.split(sections[touch.owner]) for touch in self.touches]
         return ContactState(tuple(touches))
 
     def reseamed(self, places: Mapping[str, Mapping[float, Place]]) -> ContactState:
-        """These contacts with seams at other places, by the places of each rod, by name: numbers, or expressions."""
+        """These contacts with moved seams, by the old and new places of each rod, by name: numbers or expressions."""
         touches = []
         for touch in self.touches:
             moved = places.get(touch.owner, {})
@@ -230,7 +230,7 @@ class ContactState:
 
     @property
     def places(self) -> FloatArray:
-        """All abscissae that are sought, shape (k,)."""
+        """All unknown places, shape (k,)."""
         return np.array([float(place) for touch in self.touches for place in touch.moving])
 
     def along(self, rod: str) -> list[Touch]:
@@ -238,7 +238,7 @@ class ContactState:
         return [touch for touch in self.touches if touch.owner == rod and not touch.of_body]
 
     def at(self, places: Sequence[Place]) -> ContactState:
-        """These contacts at other places: numbers, or expressions."""
+        """These contacts at other places, numbers or expressions."""
         touches = []
         first = 0
         for touch in self.touches:
@@ -251,7 +251,7 @@ class ContactState:
         """Each contact, the forces at its sections, and the coefficients of the force along it.
 
         Args:
-            forces: of all contacts, in the order of the loads.
+            forces: forces of all contacts, in the order of the loads.
             modes: polynomials of the curvature of each rod, by name.
         """
         first = 0
@@ -263,7 +263,7 @@ class ContactState:
 
     @property
     def apart(self) -> ContactState:
-        """The contacts that do not touch where a longer one of the same rod does, or one before it; tips may."""
+        """The contacts, but no two of a rod at one section, where the longer or earlier one stays; tips may share."""
         kept: list[Touch] = []
         for touch in sorted(self.touches, key=lambda touch: touch.start - touch.end):
             if touch.of_body or all(_are_apart(touch, other) for other in kept if other.owner == touch.owner):
@@ -272,7 +272,7 @@ class ContactState:
 
     @property
     def in_order(self) -> bool:
-        """Whether the places of each rod follow each other between base and tip, a little apart."""
+        """Whether the places of each rod ascend between base and tip, at least a little apart."""
         for rod in {touch.owner for touch in self.touches}:
             ends = [0.0, *(end for touch in self.along(rod) for end in touch.carriers if end != TIP)]
             gaps = np.diff(ends)
@@ -281,7 +281,7 @@ class ContactState:
         return True
 
     def loads(self, scene: scenes.Scene, modes: Mapping[str, int]) -> list[scenes.LoadRecord]:
-        """The forces of the contacts as loads of the scene, without magnitude yet: at its sections, then along it.
+        """The forces of the contacts as loads of the scene, with open magnitudes: at sections, then along lines.
 
         Args:
             scene: the scene without them.
@@ -322,13 +322,13 @@ class ContactState:
 
 
 def continuations(scene: scenes.Scene) -> dict[str, str]:
-    """Rods by the name of the rod whose tip they start from and whose line they go on without a corner."""
+    """Rods that continue another rod from its tip without a corner, by the name of the other rod."""
     following = {}
     for rod in scene.rods:
         base = rod.base
         if base.rod is None or base.at != TIP or any(base.position):
             continue
-        # About its own axis it may be turned as it likes.
+        # It may be turned about its own axis.
         _, x, y, _ = base.quaternion
         if x == 0.0 and y == 0.0:
             following[base.rod] = rod.name
@@ -336,7 +336,7 @@ def continuations(scene: scenes.Scene) -> dict[str, str]:
 
 
 def with_contacts(scene: scenes.Scene, state: ContactState, modes: Mapping[str, int]) -> scenes.Scene:
-    """The scene with the forces of its contacts as loads, whose magnitudes are inputs."""
+    """The scene with the forces of its contacts as loads with inputs as magnitudes."""
     loads = state.loads(scene, modes)
     changes: dict[str, object] = {"loads": (*scene.loads, *loads)}
     if scene.inputs is not None:
@@ -345,13 +345,13 @@ def with_contacts(scene: scenes.Scene, state: ContactState, modes: Mapping[str, 
 
 
 def contact_loads(scene: scenes.Scene) -> list[ContactPoint | ContactLine]:
-    """The forces of contacts among the loads of a scene, which no scene file names."""
+    """Loads of a scene that are forces of contacts; no scene file has them."""
     loads: Sequence[scenes.LoadRecord] = scene.loads
     return [load for load in loads if isinstance(load, ContactPoint | ContactLine)]
 
 
 def without_contacts(scene: scenes.Scene) -> scenes.Scene:
-    """The scene as its file has it."""
+    """The scene of the file, without forces of contacts."""
     names = {load.name for load in contact_loads(scene)}
     if not names:
         return scene
@@ -363,29 +363,29 @@ def without_contacts(scene: scenes.Scene) -> scenes.Scene:
 
 
 def given_names(model: SystemFunctions) -> list[str]:
-    """Names of a model's inputs, but for the forces of contacts, which follow from these."""
+    """Names of a model's inputs without the forces of contacts, which follow from the others."""
     names = {load.name for load in contact_loads(model.scene)}
     return [entry.name for entry, _ in model.inputs if entry.owner not in names]
 
 
 def given_entries(model: SystemFunctions) -> npt.NDArray[np.int64]:
-    """Indices of a model's inputs in its stacked inputs, but for the forces of contacts."""
+    """Indices, in the stacked inputs of a model, of all inputs but the forces of contacts."""
     entries = np.arange(model.inputs.size)
     return np.concatenate([entries[:0], *(entries[model.inputs.slices[name]] for name in given_names(model))])
 
 
 def given_inputs(model: SystemFunctions, inputs: FloatArray) -> FloatArray:
-    """Stacked inputs of a scene, from stacked inputs of a model of it, which may hold the forces of contacts too."""
+    """Stacked inputs of a scene, from the stacked inputs of a model that may have forces of contacts too."""
     return inputs[given_entries(model)]
 
 
 def load_sections(scene: scenes.Scene) -> dict[str, tuple[float, ...]]:
-    """Abscissae inside each rod at which what acts on it makes the shear force, or its rate, jump, by name."""
+    """Abscissae inside each rod at which a load makes the shear force, or its rate, jump, by name of the rod."""
     return {rod.name: element_ends(scene, rod.name)[1:-1] for rod in scene.rods}
 
 
 def state_in(scene: scenes.Scene) -> ContactState:
-    """The contacts whose forces are among the loads of a scene."""
+    """The state of the contacts whose forces are among the loads of a scene."""
     touches: list[Touch] = []
     loads = contact_loads(scene)
     for line in loads:
@@ -395,7 +395,7 @@ def state_in(scene: scenes.Scene) -> ContactState:
         touch = Touch.line(line.obstacle.name, line.rod, start, end)
         last = touches[-1] if touches else None
         if last is not None and (last.owner, last.obstacle, last.end) == (touch.owner, touch.obstacle, start):
-            # One line, of stretches that follow each other.
+            # Stretches that follow each other make one line.
             before = touches.pop()
             touch = replace(touch, start=before.start, seams=(*before.seams, start))
         touches.append(touch)
@@ -411,7 +411,7 @@ def state_in(scene: scenes.Scene) -> ContactState:
 
 
 def _are_apart(touch: Touch, other: Touch) -> bool:
-    """Whether two contacts of one rod touch at different sections, or at the tip different obstacles."""
+    """Whether two contacts of one rod are at different sections, or at the tip with different obstacles."""
     if touch.start == TIP and touch.obstacle != other.obstacle:
         return True
     return bool(other.end < touch.start or touch.end < other.start)

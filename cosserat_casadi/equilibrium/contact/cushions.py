@@ -1,11 +1,11 @@
-"""Where contact is, roughly: rods that sink a little into cushions, on coarse elements, as the loads grow from zero.
+"""A rough guess of contacts: rods on coarse elements sink a little into cushions as the loads grow from zero.
 
-The pressure of the cushions says which stretches are held off, and how. A cushion is an obstacle made soft: it grows
-with the loads, so that a rod whose unloaded shape lies in an obstacle, as a straight rod in a bent lumen, is pushed out
-of it on the way.
+The pressure of the cushions shows which stretches are held off, and how. A cushion is a soft obstacle, which grows with
+the loads, so that a rod whose unloaded shape lies in an obstacle, as a straight rod in a bent lumen does, is pushed out
+gradually.
 
-A cushion does not hold in its middle: a rod that is pushed, or jumps, beyond it is outside again, in an equilibrium
-that it cannot have come to. So bars and balls are barriers that rods and bodies must not come out of on the other side.
+A rod that is pushed, or jumps, beyond the middle of a cushion leaves it on the other side, to an equilibrium that is
+out of its reach. So bars and balls are barriers, which rods and bodies must not pass.
 """
 
 from __future__ import annotations
@@ -53,48 +53,48 @@ Values = Mapping[str, npt.ArrayLike] | None
 """Inputs by name."""
 
 ELEMENTS = 10
-"""Elements of every rod, beside the elements that its loads ask for: pressure is not smooth."""
+"""Elements of every rod in addition to the elements that its loads ask for: pressure is not smooth."""
 
 MODES = 3
 NODES = 6
 
 MODES_ALONE = 5
-"""Modes of a rod that touches no obstacle, which needs no elements for it."""
+"""Modes of a rod that touches no obstacle and needs no elements for pressure."""
 
 STIFFNESS = 1e6
 """First stiffness of a cushion, in units of EI/ℓ⁵."""
 
 SHALLOW = 0.01
-"""Depth, relative to the length, to which rods may sink into it."""
+"""Depth, relative to the length, to which rods may sink into a cushion."""
 
 BALL_STIFFNESS = 1e5
-"""First stiffness of a cushion on a body, in units of EI/ℓ⁴: where it is SHALLOW it pushes with 10 EI/ℓ²."""
+"""First stiffness of a cushion on a body, in units of EI/ℓ⁴: at the depth SHALLOW it pushes with 10 EI/ℓ²."""
 
 THIN_BALL_FORCE = 40.0
-"""Least stiffness times the square of the distance to the middle: half of it deep it pushes with 10 EI/ℓ²."""
+"""Least stiffness times the square of the distance to the middle: at half this distance it pushes with 10 EI/ℓ²."""
 
 LONG = 0.2
-"""Stretch of pressure from which a line of contact is tried before a point."""
+"""Length of a stretch of pressure above which a line of contact is tried before a point."""
 
 THIN_FORCE = 37.0
 """Stiffness of the cushion of a thin bar times the cube of its radius, in units of EI/ℓ⁵ and ℓ.
 
-A rod across it that has sunk in by half the radius is pressed over two radii, and with ten times EI/ℓ².
+A rod across the bar that has sunk in by half the radius is pressed over two radii, with ten times EI/ℓ².
 """
 
 MOST_ELEMENTS = 20
-"""Most elements of a rod beside a thin bar, which must not lie between two nodes."""
+"""Most elements of a rod beside a thin bar, which must not fit between two nodes."""
 
 HARDER = 10.0
-"""Factor on the stiffness of cushions through which a rod would be pushed."""
+"""Factor on the stiffness of cushions that a rod would pass."""
 
 MOST_STIFFENINGS = 3
-"""Times that cushions are made stiffer where rods sink in deeper."""
+"""Most rounds in which cushions are made stiffer for rods that sink in too deep."""
 
 
 @dataclass(frozen=True)
 class Pressure:
-    """A stretch that a cushion holds off.
+    """The pressure of a cushion on a stretch of a rod.
 
     Attributes:
         rod: name of the rod.
@@ -109,7 +109,7 @@ class Pressure:
     values: FloatArray
 
     def touch(self) -> Touch:
-        """The contact that the pressure looks like."""
+        """The contact that the pressure suggests."""
         start, end = float(self.X[0]), float(self.X[-1])
         rises = np.diff(self.values) > 0
         falls = np.flatnonzero(~rises)
@@ -128,7 +128,7 @@ class Pressure:
 
 
 def cushioned(scene: scenes.Scene, factor: float = 1.0) -> Model:
-    """The scene with cushions for obstacles, on coarse elements; cushions of rods may be raised at each node.
+    """The scene with cushions as obstacles, on coarse elements; cushions on rods may be raised at each node.
 
     Args:
         scene: without contacts.
@@ -155,11 +155,11 @@ def cushioned(scene: scenes.Scene, factor: float = 1.0) -> Model:
 
 
 def _coarse(scene: scenes.Scene, rod: scenes.Rod) -> Discretisation:
-    """Coarse elements of a rod, whose nodes are no farther apart than the thinnest bar is thick."""
+    """Coarse elements of a rod, with nodes no farther apart than the thickness of the thinnest bar."""
     own = element_ends(scene, rod.name)
     if not any(obstacle.concerns(rod.name) for obstacle in scene.obstacles):
         return Discretisation((MODES_ALONE,) * len(rod.admitted), NODES, own)
-    # None as short as the distance of an end of the loads from one of ours may be.
+    # Element ends that are too close to an end that loads ask for are left out.
     thinnest = max(_thinness(obstacle, rod) for obstacle in scene.obstacles)
     # The ratio may be beyond all range: it is bounded before it becomes a whole number.
     elements = max(ELEMENTS, ceil(min(thinnest / (2 * NODES), MOST_ELEMENTS)))
@@ -188,25 +188,25 @@ def _cushions_of_bodies(scene: scenes.Scene, factor: float) -> Iterator[Penetrat
 
 
 def _thinness(obstacle: scenes.ObstacleRecord, rod: scenes.Rod) -> float:
-    """Length of a rod over the radius of a bar or ball that it must not enter; 0 for other obstacles."""
+    """Length of a rod over the radius of a bar or ball that it must not pass; 0 for other obstacles."""
     if not obstacle.concerns(rod.name):
         return 0.0
     return 2 * rod.length / obstacle.thickness
 
 
 def _unit(rod: scenes.Rod) -> float:
-    """EI/ℓ⁵ of a rod, N/m⁴: a force per length, by the square of a depth, over the length."""
+    """EI/ℓ⁵ of a rod, N/m⁴, the unit of force per length over the square of a depth and a length."""
     properties = rod_properties(rod)
     return properties.bending_stiffness / properties.length**5
 
 
 def approach(scene: scenes.Scene, values: Values, progress: Progress | None = None) -> Solution:
-    """Equilibrium of a scene on its cushions, which are stiff enough for rods to sink in but little.
+    """Equilibrium of a scene on its cushions, which are so stiff that rods sink in only a little.
 
     Args:
         scene: without contacts.
         values: inputs by name.
-        progress: told the share of the load path that is done.
+        progress: receives the share of the load path that is done.
     """
     settings = ContinuationSettings()
     found = _under_growing_loads(cushioned(scene), values, settings, progress)
@@ -216,13 +216,13 @@ def approach(scene: scenes.Scene, values: Values, progress: Progress | None = No
         and Barriers(found.model, found.inputs).give_way(found.x)
         and factor <= HARDER**MOST_STIFFENINGS
     ):
-        # The cushion of a thin bar has given way: a harder one holds.
+        # The cushion of a thin bar has given way: a stiffer one may hold.
         found = _under_growing_loads(cushioned(scene, factor), values, settings, progress)
         factor *= HARDER
     model = found.model
     inputs = found.inputs
     if not found.converged and can_relax(model) and model.has_potential(inputs):
-        # The rod snaps on the way: it is let settle to less energy where the path ended.
+        # The rod snaps along the path: from the end of the path it relaxes to less energy.
         settled = relaxed(found, settings.newton, progress)
         if settled is not None and Barriers(model, inputs).are_between(found.x, settled.x):
             settled = None
@@ -245,7 +245,7 @@ def approach(scene: scenes.Scene, values: Values, progress: Progress | None = No
 def _under_growing_loads(
     model: Model, values: Values, settings: ContinuationSettings, progress: Progress | None
 ) -> Solution:
-    """The end of the load path on cushions, on which no rod comes out on the other side of a bar or ball."""
+    """The end of the load path on cushions, on which no rod passes a bar or ball."""
     inputs = model.pack(values)
     end = follow(_guarded(model, inputs, load_path(model, inputs)), settings, progress)
     return _judged(model, inputs, end)
@@ -260,7 +260,7 @@ def _guarded(model: Model, inputs: FloatArray, path: Path) -> Path:
 
 
 def _judged(model: Model, inputs: FloatArray, end: ContinuationResult) -> Solution:
-    """The end of a path as a solution; that coarse elements resolve a rod but roughly is no matter here."""
+    """The end of a path as a solution; an insufficient resolution by coarse elements is accepted."""
     return Solution(
         model,
         inputs,
@@ -274,17 +274,17 @@ def _judged(model: Model, inputs: FloatArray, end: ContinuationResult) -> Soluti
 
 
 def depth(solution: Solution) -> float:
-    """How deep rods and bodies sink into obstacles, relative to their lengths."""
+    """Largest depth of rods and bodies in obstacles, relative to their lengths."""
     of_rods = max((float(-gaps.min()) for _, _, gaps in _all_gaps(solution)), default=0.0)
     of_bodies = [-body_gap(solution, body, obstacle) for body, obstacle in body_pairs(solution.model.scene)]
     return max([of_rods, *of_bodies])
 
 
 def first_state(solution: Solution) -> ContactState:
-    """The contacts that the pressure of cushions looks like."""
+    """The contacts that the pressure of cushions suggests."""
     touches = []
     for rod, obstacle, gaps in _all_gaps(solution):
-        # Quadratic in the depth, as the cushions are.
+        # The pressure of cushions is quadratic in the depth.
         pressed = [Pressure(rod, obstacle.name, DENSE[part], gaps[part] ** 2) for part in runs(gaps < 0.0)]
         touches += [pressure.touch() for pressure in pressed]
     return ContactState.of([*touches, *pressed_balls(solution)])
@@ -305,7 +305,7 @@ def _all_gaps(solution: Solution) -> Iterator[tuple[str, scenes.ObstacleRecord, 
 
 @dataclass(frozen=True)
 class Barriers:
-    """The bars and balls that the unloaded rods of a model are outside of.
+    """The bars and balls around which the unloaded rods of a model are outside.
 
     Attributes:
         model: of a scene with obstacles.
@@ -317,7 +317,7 @@ class Barriers:
 
     @cached_property
     def watched(self) -> list[tuple[str, scenes.ObstacleRecord]]:
-        """Rods with obstacles that they must not pass through; a rod that begins inside is pushed out to any side."""
+        """Pairs of a rod and an obstacle that it must not pass; a rod that begins inside is pushed out to any side."""
         unloaded = self._shape(self.model.unloaded())
         return [
             (rod, obstacle)
@@ -327,7 +327,7 @@ class Barriers:
 
     @cached_property
     def watched_bodies(self) -> list[tuple[scenes.Body, scenes.ObstacleRecord]]:
-        """Pairs of a body and an obstacle that it must not pass through."""
+        """Pairs of a body and an obstacle that it must not pass."""
         unloaded = self._shape(self.model.unloaded())
         return [
             (body, obstacle)
@@ -336,7 +336,7 @@ class Barriers:
         ]
 
     def are_between(self, before: FloatArray, after: FloatArray) -> bool:
-        """Whether a rod or a body comes near the middle of one on the way between two shapes, given by unknowns."""
+        """Whether a rod or a body comes near the middle of a barrier between two shapes, given by unknowns."""
         for rod, obstacle in self.watched:
             properties = self.model.discrete.rods[rod].properties
             start = self._looked_at[rod].positions(obstacle, before, self.inputs)
@@ -352,7 +352,7 @@ class Barriers:
         return False
 
     def give_way(self, x: FloatArray) -> bool:
-        """Whether a rod or a body has sunk into an obstacle by more than half of the depth that is admitted."""
+        """Whether a rod or a body has sunk into an obstacle by more than half of the admitted depth."""
         shape = self._shape(x)
         rods_sink = any(
             gap_along(shape, rod, obstacle, DENSE).min() < -self._deepest(rod, obstacle) / 2
@@ -369,15 +369,15 @@ class Barriers:
         return {rod: LookedAt(self.model, rod) for rod, _ in self.watched}
 
     def _deepest(self, rod: str, obstacle: scenes.ObstacleRecord) -> float:
-        """Depth of a rod in an obstacle that is admitted, over the length of the rod."""
+        """Admitted depth of a rod in an obstacle, over the length of the rod."""
         radius = obstacle.thickness / 2
         return MIDDLE * radius / self.model.discrete.rods[rod].properties.length
 
     def _deepest_ball(self, body: scenes.Body, obstacle: scenes.ObstacleRecord) -> float:
-        """Depth of a body in an obstacle that is admitted, over the body's length: its centre stays off the middle."""
+        """Admitted depth of a body in an obstacle, over the body's unit of length: its centre stays off the middle."""
         radii = obstacle.thickness / 2 + inner_radius(body)
         return MIDDLE * radii / self.model.discrete.body_frame(body.name).length
 
     def _shape(self, x: FloatArray) -> Solution:
-        """The rods at some unknowns, which need not be in equilibrium."""
+        """The rods at unknowns x, which need not be an equilibrium."""
         return Solution(self.model, self.inputs, x, Outcome.CONVERGED, "", residual_norm=0.0, iterations=0)

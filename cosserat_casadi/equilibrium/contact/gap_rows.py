@@ -1,8 +1,8 @@
-"""Equations of known contacts: no gap where rods and bodies touch, no slope of the gap where contact moves.
+"""Equations of known contacts: zero gap where rods and bodies touch, zero slope of the gap at places that move.
 
 Along a line they are the moments of the gap with the polynomials of its force. Over a stretch of the width w a force
-per length f_j P_j moves the gap by some w⁴ f_j/j⁴: along short ones by less than rounding, which leaves f_j open. There
-the surface gives way by less than rounding too, so that f_j is small; the mean f_0 is left as it is:
+per length f_j P_j moves the gap by about w⁴ f_j/j⁴: on short stretches by less than rounding, which does not determine
+f_j. A compliance of the surface below rounding makes f_j small there; the mean f_0 is not changed:
 
     ∫ P_j (d − ρ) + c/w f_j = 0,    j > 0.
 
@@ -31,7 +31,7 @@ from cosserat_casadi.model.system import System
 from cosserat_casadi.rod.strain import DiscreteRod
 
 GIVES = 1e-17
-"""c, relative to the length of the rod: how far a surface gives way under EI/ℓ³ that varies along a whole rod."""
+"""c, relative to the length of the rod: compliance of a surface to a force EI/ℓ³ that varies along a whole rod."""
 
 
 def gap_rows(system: System, state: ContactState, modes: Mapping[str, int], forces: Matrix) -> Matrix:
@@ -41,7 +41,7 @@ def gap_rows(system: System, state: ContactState, modes: Mapping[str, int], forc
         system: the scene with the contacts.
         state: the contacts.
         modes: polynomials of the curvature of each rod, by name.
-        forces: of all contacts, without unit, in the order of the loads.
+        forces: dimensionless forces of all contacts, in the order of the loads.
     """
     rows: list[Matrix] = [ca.MX(0, 1)]
     for touch, _, along in state.with_forces(forces, modes):
@@ -62,9 +62,9 @@ def gap_rows(system: System, state: ContactState, modes: Mapping[str, int], forc
 
 
 def force_widths(state: ContactState, modes: Mapping[str, int]) -> list[Place | None]:
-    """Share of the rod that the force of each row of the gaps is spread over; None for slopes, which have no force.
+    """Share of the rod over which the force of each gap row is spread; None for slopes, which have no force.
 
-    A force at a section counts as spread over one: gaps at sections are no averages over a stretch.
+    The share of a force at a section is one: a gap at a section is not an average over a stretch.
     """
     widths: list[Place | None] = []
     for touch in state.touches:
@@ -123,20 +123,20 @@ class Distances:
         return base + X * (tip - base)
 
     def _gap(self, node: int, X: Place) -> tuple[Matrix, Matrix]:
-        """Distance of the surface at a node, m, and the normal of the obstacle there, in the axes it is given in."""
+        """Distance of the surface at a node, m, and the normal of the obstacle there, in the obstacle's axes."""
         shape = self.system.shapes[self.rod]
         position = self.system.base(self.rod).position + self._world_R_base @ shape.position_at(node)
         distance, normal, _ = surface(self.obstacle)(self.system.seen_from(self.obstacle.body, position))
         return distance - self._radius(X), normal
 
     def at(self, X: Scalar) -> tuple[Matrix, Matrix]:
-        """Distance and its rate with X at an end of an element, over the length."""
+        """Distance and its derivative by X at an end of an element, over the length."""
         grid = self._discrete_rod.grid
         node = grid.node_at(X)
         gap, normal = self._gap(node, X)
         tangent = self._world_R_base @ self.system.shapes[self.rod].tangent[:, node]
         tangent = self.system.turned_to(self.obstacle.body, tangent)
-        # The tangent is the rate of the coordinate that integrals run over, which a moving element stretches.
+        # The tangent is the derivative by the coordinate of the integrals, which a moving element stretches.
         rate = grid.rates_in(grid.element_of_node[[node]])
         if rate is not None:
             tangent = tangent / as_matrix(rate)[0]
@@ -153,6 +153,6 @@ class Distances:
         width = end - start
         gaps = ca.vertcat(*[self._gap(int(node), X[i])[0] for i, node in enumerate(nodes)])
         polynomials = as_matrix(polynomials_at(count, (X - start) / width))
-        # Weights are of the whole rod: over the stretch they add up to one.
+        # Weights of the whole rod are scaled: over the stretch they add up to one.
         weights = grid.weights[nodes] / grid.weights[nodes].sum()
         return polynomials @ (ca.DM(weights) * gaps) / self._discrete_rod.properties.length

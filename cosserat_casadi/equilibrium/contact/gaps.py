@@ -18,14 +18,14 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.properties import RodProperties
 
 DENSE = np.linspace(0.0, 1.0, 801)
-"""Abscissae at which rods are held against obstacles; they are no nodes."""
+"""Abscissae at which distances from obstacles are evaluated; they are not nodes."""
 
 ROUNDING = 1e-14
-"""Gap and slope at a base, relative to the length, that are zero."""
+"""Gap and slope at a base, relative to the length, that count as zero."""
 
 
 def pairs(scene: scenes.Scene) -> Iterator[tuple[str, scenes.ObstacleRecord]]:
-    """Every rod with every obstacle that it touches exactly, if at all; of obstacles that coincide with the first."""
+    """Every rod with every obstacle without a width that concerns it; only the first of coinciding obstacles."""
     for rod in scene.rods:
         concerned = [obstacle for obstacle in scene.obstacles if obstacle.concerns(rod.name) and not obstacle.is_smooth]
         for obstacle in _distinct(concerned):
@@ -33,7 +33,7 @@ def pairs(scene: scenes.Scene) -> Iterator[tuple[str, scenes.ObstacleRecord]]:
 
 
 def body_pairs(scene: scenes.Scene) -> Iterator[tuple[scenes.Body, scenes.ObstacleRecord]]:
-    """Every body with every obstacle that it touches exactly, if at all, as a ball or a disk about its origin."""
+    """Every body with every obstacle without a width that concerns it, as a ball or a disk about its origin."""
     for body in scene.bodies:
         concerned = [
             obstacle for obstacle in scene.obstacles if obstacle.concerns_body(body.name) and not obstacle.is_smooth
@@ -43,7 +43,7 @@ def body_pairs(scene: scenes.Scene) -> Iterator[tuple[scenes.Body, scenes.Obstac
 
 
 def _distinct(obstacles: Sequence[scenes.ObstacleRecord]) -> Iterator[scenes.ObstacleRecord]:
-    """Obstacles without copies at the place of an earlier one: how the two share the force would not be known."""
+    """Obstacles without copies of an earlier one at the same place: the force between them would be undetermined."""
     shapes: list[dict[str, object]] = []
     for obstacle in obstacles:
         shape = obstacle.model_dump(exclude={"name", "rods", "bodies"})
@@ -65,7 +65,7 @@ def gap_along(solution: Solution, rod: str, obstacle: scenes.ObstacleRecord, X: 
 
 
 def seen_sections(solution: Solution, rod: str, obstacle: scenes.ObstacleRecord, X: FloatArray) -> FloatArray:
-    """Positions of a rod's sections at abscissae X in the axes that an obstacle is given in, shape (k, 3), m."""
+    """Positions of a rod's sections at abscissae X in the axes of an obstacle, shape (k, 3), m."""
     return seen_positions(solution, obstacle, solution.pose(X, rod).position)
 
 
@@ -74,7 +74,7 @@ def section_gaps(
 ) -> FloatArray:
     """Distances of a rod's sections at abscissae X from an obstacle, shape (k,), m, for positions of shape (k, 3).
 
-    Positions are in the axes that the obstacle is given in.
+    Positions are in the axes of the obstacle.
     """
     return np.asarray(distances(obstacle, positions) - section_radius(properties, X))
 
@@ -86,18 +86,18 @@ def body_gap(solution: Solution, body: scenes.Body, obstacle: scenes.ObstacleRec
 
 
 def gap_at(obstacle: scenes.ObstacleRecord, body: scenes.Body, pose: SolvedPoses) -> float:
-    """Distance of the surface of a body in a pose from an obstacle, m."""
+    """Distance of the surface of a body at a pose from an obstacle, m."""
     distance, normal, _ = surface(obstacle)(pose.position)
     return float(distance - support_of(body, normal, ca.DM(pose.rotation))[0])
 
 
 def support_of(body: scenes.Body, normal: Matrix, rotation: Matrix) -> tuple[Matrix | float, Matrix]:
-    """How far a body reaches against the normal of an obstacle, m, and from its origin to where it does, 3×1, m.
+    """Reach of a body against the normal of an obstacle, m, and the vector from its origin to that point, 3×1, m.
 
     Args:
         body: a ball, or a disk about its z axis.
-        normal: 3×1.
-        rotation: of the body, 3×3.
+        normal: normal of the obstacle, 3×1.
+        rotation: rotation of the body, 3×3.
     """
     radius = ball_radius(body)
     if body.thickness is None:
@@ -137,7 +137,7 @@ def normals(solution: Solution, rod: str, obstacle: scenes.ObstacleRecord, X: Fl
 def lies_at_base(solution: Solution, rod: str, obstacle: scenes.ObstacleRecord) -> bool:
     """Whether a clamp holds the base of a rod on an obstacle and along it: gap and slope are zero to rounding.
 
-    A line of contact begins at the fourth root of such a gap: one of 1e-12 of the length is no rounding.
+    A line of contact begins at the fourth root of such a gap: a gap of 1e-12 of the length is not rounding.
     """
     if obstacle.body is not None or solution.model.discrete.unloaded.floating_base(rod) is not None:
         return False
@@ -151,7 +151,7 @@ def lies_at_base(solution: Solution, rod: str, obstacle: scenes.ObstacleRecord) 
 
 
 def touching_points(solution: Solution, contact: Contact, along: int) -> FloatArray:
-    """Centres of the sections that touch, as many along a line as are asked for; of a body where its ball touches."""
+    """Centres of the touching sections, ``along`` of them on a line; for a body the point that touches."""
     if contact.of_body:
         (body,) = [body for body in solution.model.scene.bodies if body.name == contact.owner]
         obstacle = obstacle_of(solution.model.scene, contact.obstacle)
@@ -168,7 +168,7 @@ def touching_points(solution: Solution, contact: Contact, along: int) -> FloatAr
 
 
 def runs(chosen: npt.NDArray[np.bool_]) -> Iterator[slice]:
-    """Stretches of neighbours that are chosen."""
+    """Slices of consecutive entries that are true."""
     padded = np.concatenate([[False], chosen, [False]]).astype(int)
     steps = np.diff(padded)
     starts = np.flatnonzero(steps == 1)

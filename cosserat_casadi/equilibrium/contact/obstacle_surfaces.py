@@ -48,14 +48,14 @@ def distances(obstacle: scenes.ObstacleRecord, positions: FloatArray) -> FloatAr
 
 
 class DistanceAlong(NamedTuple):
-    """Distance of a curve from an obstacle at one of its points, and what its derivatives are made of.
+    """Distance of a curve from an obstacle at one of its points, with its derivatives.
 
     Attributes:
         value: the distance, m.
-        slope: its derivative with the parameter of the curve, m.
+        slope: its derivative by the parameter of the curve, m.
         bend: its second derivative, m.
-        normal: of the obstacle, shape (3,).
-        curvature: second derivative of the distance with the point, shape (3, 3), 1/m.
+        normal: normal of the obstacle, shape (3,).
+        curvature: second derivative of the distance by the point, shape (3, 3), 1/m.
     """
 
     value: float
@@ -73,7 +73,7 @@ def distance_along(
     Args:
         obstacle: the obstacle.
         position: the point, shape (3,), m.
-        first: derivative of the curve with its parameter, shape (3,), m.
+        first: derivative of the curve by its parameter, shape (3,), m.
         second: second derivative, shape (3,), m.
     """
     return along_curve([part.full() for part in surface(obstacle)(position)], first, second)

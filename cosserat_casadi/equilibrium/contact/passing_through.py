@@ -1,10 +1,11 @@
 """Whether rods would pass through obstacles on the way from one shape to another.
 
-A solve that starts from a solution knows its shape alone: where inputs change much, Newton's method may end behind an
-obstacle, in an equilibrium that the rods could not have come to.
+A solve that starts from a solution knows its shape alone: if inputs change much, Newton's method may end behind an
+obstacle, in an equilibrium that the rods could not have reached.
 
-Sections move in straight lines. A distance changes by no more than the way, so that a part of the rod and of the way is
-free of the obstacle where the distance in its middle is larger than the part is wide; a part that is not is halved.
+Sections move in straight lines. A distance changes by no more than the length of the way, so that a part of the rod and
+of the way is free of the obstacle if the distance in its middle is larger than the width of the part; other parts are
+halved.
 """
 
 from __future__ import annotations
@@ -36,27 +37,27 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.rod.properties import RodProperties
 
 SECTIONS = DENSE
-"""Abscissae that are looked at."""
+"""Abscissae of the sections whose ways are checked."""
 
 DEEP = 1e-3
-"""Depth on the way, relative to the length, that is more than the chord of a rod that slides along an obstacle."""
+"""Depth on the way, relative to the length, above the depth of the chord of a rod that slides along an obstacle."""
 
 MIDDLE = 0.7
-"""Share of the way from the surface to the middle of a bar or ball by which a rod may sink in.
+"""Share of the distance from the surface to the middle of a bar or ball by which a rod may sink in.
 
-Deeper it would come out on the other side. A rod with a radius touches before its centre line is at the surface.
+Deeper rods come out on the other side. A rod with a radius touches before its centre line is at the surface.
 """
 
 FINEST = 0.25
-"""Width of the smallest parts of a way, over the depth that is admitted: no way through the middle is missed."""
+"""Width of the smallest parts of a way, over the admitted depth: no way through the middle is missed."""
 
 
 @dataclass(frozen=True)
 class LookedAt:
-    """The sections of a rod that are looked at, of shapes that are asked for one after the other.
+    """Positions of the checked sections of a rod, for one shape after the other.
 
     Attributes:
-        model: of the scene.
+        model: model of the scene.
         rod: name of the rod.
     """
 
@@ -64,10 +65,10 @@ class LookedAt:
     rod: str
 
     def positions(self, obstacle: scenes.ObstacleRecord, x: FloatArray, inputs: FloatArray) -> FloatArray:
-        """Positions at the abscissae SECTIONS, in the axes that an obstacle is given in, shape (k, 3), m.
+        """Positions at the abscissae SECTIONS, in the axes of an obstacle, shape (k, 3), m.
 
         Args:
-            obstacle: what sees them.
+            obstacle: the obstacle.
             x: unknowns, shape (model.size,).
             inputs: stacked inputs, shape (model.inputs.size,).
         """
@@ -85,10 +86,10 @@ class LookedAt:
         """Positions as of :meth:`positions` in T states, at one of ``every`` SECTIONS, shape (T, k, 3), m.
 
         Args:
-            obstacle: what sees them.
+            obstacle: the obstacle.
             x: unknowns, shape (T, model.size).
             inputs: stacked inputs, shape (T, model.inputs.size).
-            every: number of SECTIONS of which positions have one.
+            every: stride through SECTIONS.
         """
         at_nodes = evaluated(self.model.fields[self.rod], x, inputs)[0]
         positions = np.asarray(self._interpolation[::every] @ np.swapaxes(at_nodes, 1, 2))
@@ -106,7 +107,7 @@ class LookedAt:
 def seen_from(
     model: Model, obstacle: scenes.ObstacleRecord, x: FloatArray, inputs: FloatArray, positions: FloatArray
 ) -> FloatArray:
-    """Positions in the world, shape (k, 3), in the axes that an obstacle is given in."""
+    """Convert positions in the world, shape (k, 3), to the axes of an obstacle."""
     if obstacle.body is None:
         return positions
     position, quaternion, rotation = (part.full() for part in model.body[obstacle.body](x, inputs))
@@ -114,12 +115,12 @@ def seen_from(
 
 
 def passes_through(before: Solution, after: Solution, deepest: float = DEEP) -> bool:
-    """Whether a section or a body is inside an obstacle on the straight way from one shape to the other.
+    """Whether a section or a body is inside an obstacle on the straight way from one shape to another.
 
     Args:
         before: a shape.
         after: another, of the same scene.
-        deepest: depth on the way, as :func:`is_inside_between` takes it.
+        deepest: admitted depth on the way, see :func:`is_inside_between`.
     """
     for rod, obstacle in pairs(after.model.scene):
         start = seen_sections(before, rod, obstacle, SECTIONS)
@@ -135,13 +136,13 @@ def passes_through(before: Solution, after: Solution, deepest: float = DEEP) -> 
 
 
 def admitted_depth(obstacle: scenes.ObstacleRecord, length: Scalar, deepest: Scalar, radius: Scalar) -> Scalar:
-    """Depth inside an obstacle on the way that is not deep, m.
+    """Admitted depth inside an obstacle on the way, m.
 
     Args:
         obstacle: the obstacle.
-        length: what depths are relative to, m.
-        deepest: the depth relative to it; at most :data:`MIDDLE` of the way to the middle is admitted.
-        radius: of a ball, or of the thinnest section of a rod, m.
+        length: unit of depths, m.
+        deepest: admitted depth relative to it; the result is at most :data:`MIDDLE` of the distance to the middle.
+        radius: radius of a ball, or of the thinnest section of a rod, m.
     """
     return least([deepest * length, MIDDLE * (obstacle.thickness / 2 + radius)])
 
@@ -159,15 +160,15 @@ def ball_is_inside_between(
 
     Args:
         obstacle: the obstacle.
-        radius: of the ball, m.
-        length: what depths are relative to, m.
+        radius: radius of the ball, m.
+        length: unit of depths, m.
         start: first position, shape (3,), or first positions of several ways, shape (ways, 3), m.
         end: last position, of the shape of ``start``, m.
-        deepest: depth on the way up to which it is not inside, at most :data:`MIDDLE` of the way to the middle.
-        bend: how far the way, or each way, may be off the straight one, m; a number, or shape (ways,).
+        deepest: admitted depth on the way, at most :data:`MIDDLE` of the distance to the middle.
+        bend: largest distance of the way, or each way, from the straight one, m; a number, or shape (ways,).
     """
     admitted = float(admitted_depth(obstacle, length, deepest, radius))
-    # A stretch without length.
+    # A ball is a stretch of zero length.
     ends = (np.repeat(np.atleast_2d(start), 2, axis=0), np.repeat(np.atleast_2d(end), 2, axis=0))
     sinking = _sinking(lambda positions, _: ball_gaps(obstacle, radius, positions), *ends, np.zeros(2), admitted, bend)
     return bool(sinking.any())
@@ -186,14 +187,13 @@ def is_inside_between(
 
     Args:
         obstacle: the obstacle.
-        properties: of the rod.
+        properties: properties of the rod.
         start: first positions at the abscissae SECTIONS, in the axes of the obstacle, shape (k, 3), m; or first
             positions of several ways, shape (ways, k, 3).
         end: last positions, of the shape of ``start``, m.
-        deepest: depth on the way, relative to the length of the rod, up to which it is not inside, at most
-            :data:`MIDDLE` of the way of its thinnest section to the middle.
-        every: step from one of SECTIONS to the next one of the positions.
-        bend: how far sections may be off the straight way, m, or off each way, shape (ways,).
+        deepest: admitted depth on the way over the length, at most :data:`MIDDLE` of the distance to the middle.
+        every: stride through SECTIONS of the positions.
+        bend: largest distance of sections from the straight way, m, or from each way, shape (ways,).
     """
     thinnest = float(section_radius(properties, SECTIONS).min())
     admitted = float(admitted_depth(obstacle, properties.length, deepest, thinnest))
@@ -209,10 +209,10 @@ def is_inside_between(
 
 
 def _off_chords(positions: FloatArray) -> FloatArray:
-    """How far rods may be off the straight lines between their sections, shape (ways,), m.
+    """Bound on the distance of rods from the chords between their sections, shape (ways,), m.
 
-    Between sections at a distance h the arc of the curvature κ is κ h²/8 off its chord, and second differences of
-    positions are κ h². Twice that, since the curvature changes between sections.
+    Between sections at a distance h an arc of the curvature κ is κ h²/8 off its chord, and second differences of
+    positions are κ h². The bound is twice that, since the curvature changes between sections.
     """
     bends = np.linalg.norm(np.diff(positions, 2, axis=-2), axis=-1)
     return np.atleast_1d(bends.max(axis=-1, initial=0.0) / 4)
@@ -226,15 +226,15 @@ def _sinking(
     admitted: float,
     off: float | FloatArray = 0.0,
 ) -> npt.NDArray[np.bool_]:
-    """Straight ways of sections from their positions to others on which a gap is below −admitted, shape (ways,).
+    """Whether each straight way of sections has a gap below −admitted, shape (ways,).
 
     Args:
-        gaps_at: gaps, m, at positions of shape (k, 3) with their abscissae.
+        gaps_at: function from positions, shape (k, 3), and their abscissae to gaps, m.
         start: first positions at X, between which the rod is straight, one way after another, shape (…, 3), m.
         end: last positions, of the shape of ``start``, m.
         X: abscissae, shape (k,).
-        admitted: depth, m.
-        off: how far the rod may be off the straight lines between its sections, m, on all ways or on each, (ways,).
+        admitted: admitted depth, m.
+        off: bound on the distance of the rod from the chords between its sections, m, on all ways or each, (ways,).
     """
     start, end = start.reshape(-1, 3), end.reshape(-1, 3)
     sections = len(X)
@@ -242,13 +242,13 @@ def _sinking(
     least: FloatArray = np.broadcast_to(np.asarray(off - admitted, dtype=float), sunk.shape)
     joints = np.arange(1, len(start)) % sections == 0
     X = np.tile(X, len(sunk))
-    # Types are written: to infer those of what the loop changes takes the type checker six seconds.
+    # Types are declared: inferring the types of variables that the loop changes takes the type checker six seconds.
     ways: FloatArray = np.asarray(np.linalg.norm(end - start, axis=1), dtype=float)
     stretches: FloatArray = np.maximum(
         *(np.linalg.norm(np.diff(positions, axis=0), axis=1) for positions in (start, end))
     )
     first: npt.NDArray[np.int_] = np.flatnonzero(~joints)
-    # Middle and width of each part, in the number of the section and in the share of the way.
+    # Middle and width of each part, in the index of the section and in the share of the way.
     section: FloatArray = first + np.float64(0.5)
     share: FloatArray = np.full(len(first), 0.5)
     along: FloatArray = np.ones(len(first))

@@ -1,8 +1,8 @@
 """Small changes of an equilibrium in exact contact, as long as every contact presses.
 
-A gap stays zero at the section that touches, along a line at all of it. What a moving place of contact does to the
-stiffness is N (∂d′/∂x)² / d″, as in stability (contact_judgement.py). So small changes ask for no elements that move:
-the elements of the rods serve to the error of the modes.
+A gap stays zero at the section that touches, or all along a line. A moving place of contact adds N (∂d′/∂x)² / d″ to
+the stiffness, as in stability (contact_judgement.py). So small changes do not need moving elements: the rods' own
+elements are as accurate as their modes.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ from cosserat_casadi.maths.typing import FloatArray
 
 @dataclass(frozen=True)
 class PressingContacts:
-    """The part of contacts in the equations of small changes of n unknowns under m inputs.
+    """Terms of contacts in the equations of small changes of n unknowns under m inputs.
 
     Attributes:
         held: gradients of the gaps that stay zero, shape (k, n).
-        held_by_inputs: derivatives of these gaps with the inputs, shape (k, m).
-        stiffness: added to the derivative of the residual with the unknowns, shape (n, n).
-        stiffness_by_inputs: added to the derivative of the residual with the inputs, shape (n, m).
+        held_by_inputs: derivatives of these gaps by the inputs, shape (k, m).
+        stiffness: term in the derivative of the residual by the unknowns, shape (n, n).
+        stiffness_by_inputs: term in the derivative of the residual by the inputs, shape (n, m).
         given: indices of the inputs of the scene; the other inputs are forces of the contacts.
     """
 
@@ -43,7 +43,7 @@ class PressingContacts:
 
 
 def pressing_contacts(solution: Solution) -> PressingContacts:
-    """The contacts of an equilibrium that press; none where nothing touches exactly."""
+    """The pressing contacts of an equilibrium; empty without exact contact."""
     model = solution.model
     given = given_entries(model)
     if not contact_loads(model.scene):
@@ -63,14 +63,14 @@ def pressing_contacts(solution: Solution) -> PressingContacts:
 
 
 def marginal_contact(solution: Solution) -> str:
-    """A sentence on a contact that is neither pressed nor open, which one side of each motion alone meets; or none."""
+    """A sentence on a contact with zero force and zero gap, which acts on one side of a motion alone; or none."""
     if not solution.model.scene.touches_exactly:
         return ""
     found = equilibrium_in(solution)
     discrete = solution.model.discrete
     for touch, push in found.pushes():
         if push <= LEAST_TOLERANCE:
-            # Below rounding a contact that is just touched pulls.
+            # A contact with zero force may pull by rounding.
             force = max(push, 0.0) * found.largest_force * discrete.contact_unit(touch.owner, of_body=touch.of_body)
             return f"{touch.owner!r} is on {touch.obstacle!r} and presses with {force:.2g} N only."
     for near in found.penetrations(-LEAST_TOLERANCE):
@@ -84,7 +84,7 @@ def marginal_contact(solution: Solution) -> str:
 
 
 def _is_held(near: Penetrated, touches: Sequence[Touch]) -> bool:
-    """Whether a whole stretch next to an obstacle belongs to contacts of it, or to a base that is clamped on it."""
+    """Whether a stretch at an obstacle lies in the obstacle's contacts, or at a base that is clamped on it."""
     reached = NEAR if near.start == 0.0 and not near.of_body else -inf
     for touch in sorted(touches, key=lambda touch: float(touch.start)):
         if float(touch.start) - NEAR <= max(reached, near.start):

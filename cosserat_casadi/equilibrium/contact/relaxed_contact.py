@@ -1,13 +1,13 @@
-"""Exact contact as equations that stay as contacts come and go: relaxed pairs of force and gap at sections.
+"""Exact contact as equations that do not change as contacts come and go: relaxed pairs of force and gap at sections.
 
-An optimiser goes on from contacts to others, and its equations must not change. So each of a number of sections has
-a force N without unit, with the gap g over the length the pair of a cable that may go slack,
+An optimiser changes the contacts, but its equations must not change. So each of a number of sections has a
+dimensionless force N and a gap g over the length, with the complementarity of a cable that may go slack,
 
     N + g − √(N² + g² + ε²) = 0,    which is N g = ε²/2 with N, g > 0.
 
 Forces and gaps are those of the exact law: a section is a contact at a point, where an element ends. The smoothing ε
 and the abscissae of the sections are parameters of the equations. As ε goes to zero each section obeys the exact law;
-rods may enter obstacles between sections, so that sections which touch move to the places of the exact contacts.
+rods may enter obstacles between sections, so that touching sections are moved to the places of the exact contacts.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ NODES = 4
 """Intervals of the integration between two sections."""
 
 FIRST_SMOOTHING = 1e-2
-"""Smoothing ε to begin with: gap times force is 5e-5 of the length and of EI/ℓ²."""
+"""First smoothing ε: gap times force is 5e-5 in units of the length and of EI/ℓ²."""
 
 
 @dataclass(frozen=True)
@@ -63,8 +63,8 @@ class RelaxedContact:
     """A scene in exact contact as functions of its unknowns z = (x, N), its inputs, and p = (ε, abscissae).
 
     Attributes:
-        model: the model of the scene, on whose modes the exact contacts are found.
-        equations: the equations of the sections that may touch.
+        model: the model of the scene, with the modes for exact contacts.
+        equations: the contact equations with every section as a contact.
     """
 
     model: Model
@@ -72,12 +72,12 @@ class RelaxedContact:
 
     @property
     def inputs(self) -> InputLayout:
-        """Names, order and default values of the inputs, which are the model's."""
+        """Names, order and default values of the inputs of the model."""
         return self.model.inputs
 
     @property
     def size(self) -> int:
-        """Number of unknowns and of forces."""
+        """Number of unknowns plus number of forces."""
         return int(self._written.z.shape[0])
 
     @property
@@ -97,17 +97,17 @@ class RelaxedContact:
 
     @cached_property
     def jacobian(self) -> ca.Function:
-        """(z, inputs, p) ↦ derivative of the residual with z, and the residual."""
+        """(z, inputs, p) ↦ derivative of the residual by z, and the residual."""
         return self._function("jacobian", self._written.jacobian, self._written.residual)
 
     @cached_property
     def input_jacobian(self) -> ca.Function:
-        """(z, inputs, p) ↦ derivative of the residual with the inputs."""
+        """(z, inputs, p) ↦ derivative of the residual by the inputs."""
         return self._function("input_jacobian", ca.jacobian(self._written.residual, self._written.inputs))
 
     @cached_property
     def parameter_jacobian(self) -> ca.Function:
-        """(z, inputs, p) ↦ derivative of the residual with p."""
+        """(z, inputs, p) ↦ derivative of the residual by p."""
         return self._function("parameter_jacobian", ca.jacobian(self._written.residual, self._written.p))
 
     @cached_property
@@ -122,18 +122,18 @@ class RelaxedContact:
 
     @cached_property
     def tip_jacobian(self) -> dict[str, ca.Function]:
-        """(z, inputs, p) ↦ derivatives of the tip's position and quaternion, 7×…, with each argument, by rod."""
+        """(z, inputs, p) ↦ derivatives of the tip's position and quaternion by each argument, 7×… each, by rod."""
         return {name: self._slopes(pose) for name, pose in self.tip.items()}
 
     @cached_property
     def body_jacobian(self) -> dict[str, ca.Function]:
-        """(z, inputs, p) ↦ derivatives of a body's position and quaternion, 7×…, with each argument, by body."""
+        """(z, inputs, p) ↦ derivatives of a body's position and quaternion by each argument, 7×… each, by body."""
         return {name: self._slopes(pose) for name, pose in self.body.items()}
 
     def near(self, solution: Solution, p: npt.ArrayLike | None = None) -> FloatArray:
         """Unknowns and forces in relaxed balance near an equilibrium of the scene, at its inputs, shape (size,).
 
-        Newton's method goes there; where it does not end, unknowns and forces of the equilibrium are returned.
+        Newton's method solves for them; if it fails, unknowns and forces of the equilibrium are returned.
 
         Args:
             solution: an equilibrium of :attr:`model`, or of another model of the scene.
@@ -156,11 +156,11 @@ class RelaxedContact:
         return relaxed.x if relaxed.outcome is Outcome.CONVERGED else start
 
     def solution(self, z: FloatArray, inputs: FloatArray, p: FloatArray) -> Solution:
-        """The shape of unknowns of a problem, not judged, with a contact at every section."""
+        """The shape of unknowns z as a solution that is not judged, with a contact at every section."""
         return self._equilibrium(z, inputs, p)[0]
 
     def exact(self, z: FloatArray, inputs: FloatArray, p: FloatArray) -> Solution:
-        """The equilibrium at these inputs whose contacts obey the exact law, looked for from the sections that press.
+        """The equilibrium in exact contact at these inputs, solved from the sections that press.
 
         Args:
             z: unknowns and forces of a problem, shape (size,).
@@ -174,7 +174,7 @@ class RelaxedContact:
         return solve_contact(scene, grids, values, start=relaxed, contacts=contacts)
 
     def moved_to(self, solution: Solution, p: FloatArray) -> FloatArray:
-        """The parameters with the sections nearest to contacts of a solution at their places."""
+        """The parameters p with the sections nearest to a solution's contacts moved to the contacts' places."""
         touches = list(self.equations.state.at(p[1:].tolist()).touches)
         loads = load_sections(self.equations.scene)
         for owner, obstacle in {(contact.owner, contact.obstacle) for contact in solution.contacts}:
@@ -228,9 +228,9 @@ class _Written:
         z: unknowns and forces.
         inputs: of the scene.
         p: smoothing and abscissae.
-        at: arguments of the functions of the model whose elements end at the sections.
+        at: arguments of the functions of the model with element ends at the sections.
         residual: balance, then pairs.
-        jacobian: its derivative with z.
+        jacobian: its derivative by z.
     """
 
     z: ca.MX
@@ -247,11 +247,11 @@ class _Written:
 
     @classmethod
     def of(cls, equations: ContactEquations) -> _Written:
-        """The equations of sections that may touch."""
+        """The expressions for the equations of sections that may touch."""
         written = equations.written
         x, forces, places = written.unknowns
         size, count = x.shape[0], forces.shape[0]
-        # Rows without a width are slopes of gaps, which place a contact: sections have their places.
+        # Rows without a width are slopes of gaps, which determine places: sections have fixed places.
         widths = force_widths(equations.state, written.modes)
         gap_rows = [size + number for number, width in enumerate(widths) if width is not None]
         smoothing = ca.MX.sym("smoothing")
@@ -293,12 +293,12 @@ def _nearest(sections: list[float], places: list[float], loads: Sequence[float])
 
 
 def _pressing(state: ContactState, forces: FloatArray, least: float) -> ContactState:
-    """The contacts that forces of sections look like: neighbours that press are one point, or a line.
+    """The contacts that forces of sections suggest: neighbours that press are one point, or a line.
 
     Args:
         state: all sections.
-        forces: of each, without unit.
-        least: force that equals the gap of its pair; more of it is a contact.
+        forces: dimensionless force of each section.
+        least: force that equals the gap of its pair; a larger force is a contact.
     """
     kept: list[Touch] = []
     run: list[tuple[Touch, float]] = []
@@ -314,7 +314,7 @@ def _pressing(state: ContactState, forces: FloatArray, least: float) -> ContactS
 
 
 def _as_one(run: Sequence[tuple[Touch, float]]) -> Touch:
-    """The one contact that neighbours which press are taken for: a point, or a line."""
+    """The one contact that represents neighbours which press: a point, or a line."""
     first, last = run[0][0], run[-1][0]
     if first.of_body or len(run) == 1:
         return first
@@ -331,7 +331,7 @@ def relaxed_contact(
 
     Args:
         model: a model of a scene with obstacles without a width; parameters have its values.
-        sections: of each rod that may touch each obstacle, of which the last is the tip.
+        sections: number of sections of each rod that may touch each obstacle; the last one is the tip.
         modes: polynomials of each strain of such a rod between two sections; other rods keep theirs.
         nodes: intervals of the integration between two sections.
 
@@ -349,7 +349,7 @@ def relaxed_contact(
     for rod in scene.rods:
         obstacles = [obstacle for name, obstacle in of_rods if name == rod.name]
         for number, obstacle in enumerate(obstacles):
-            # No two obstacles have a section in common but the tip.
+            # Two obstacles have no section in common except the tip.
             late = number / len(obstacles)
             inner = [(i + 1 - late) / sections for i in range(sections - (late == 0.0))]
             touches += [Touch.point(obstacle.name, rod.name, X) for X in (*inner, TIP)]

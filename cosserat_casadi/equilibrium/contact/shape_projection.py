@@ -1,4 +1,4 @@
-"""A solved shape on other elements: where to start from when contact moves on, comes or goes."""
+"""A solved shape on other elements: the start of a solve after contacts have moved, come or gone."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from cosserat_casadi.model.unknowns import BlockKind
 
 
 def projected(solution: Solution, model: Model) -> FloatArray:
-    """Unknowns of a model of the same rods on other elements, shape (model.size,): strains are fitted in each."""
+    """Unknowns of a model with these rods on other elements, shape (model.size,): strains are fitted in each."""
     old = solution.model.discrete
     blocks = []
     for name, rod in model.discrete.rods.items():
