@@ -22,6 +22,7 @@ from cosserat_casadi.constraints.held_directions import CLAMPED
 from cosserat_casadi.constraints.section_constraint import SectionConstraint
 from cosserat_casadi.loads.contact_layer import ContactLayer
 from cosserat_casadi.loads.obstacle_load import section_radii
+from cosserat_casadi.loads.rods_point import RodsPoint
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import Scalar, any_symbolic, as_matrix, as_vector, is_symbolic, known
 from cosserat_casadi.maths.typing import Matrix
@@ -324,6 +325,11 @@ class DiscreteScene:
         if self.given_sections is None:
             return tuple(pairs)
         return tuple(pair.finer(FINER_PAIRS) if any(map(self.draws_apart, pair.rods)) else pair for pair in pairs)
+
+    @cached_property
+    def rods_points(self) -> list[RodsPoint]:
+        """Forces between rods that touch at a section of either."""
+        return [load for load in self.scene.loads if isinstance(load, RodsPoint)]
 
     @property
     def has_layers(self) -> bool:
