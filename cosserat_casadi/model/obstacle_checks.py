@@ -57,8 +57,9 @@ def refuse_obstacles(scene: scenes.Scene, what: str, remedy: str = WIDTH) -> Non
         remedy: what to do about it; ``{width}`` in it stands for the sentence of :func:`suggested_width`.
 
     Raises:
-        SceneError: the scene has obstacles without a width.
+        SceneError: the scene has obstacles without a width, or rods that touch rods so.
     """
+    refuse(exact_rods(scene, what))
     if scene.touches_exactly:
         problem = f"{what} does not look for contact that is exact: its rods would pass through them"
         raise SceneError(Problem("obstacles", problem, remedy.format(width=suggested_width(scene))))
@@ -73,9 +74,8 @@ def exact_rods(scene: scenes.Scene, what: str) -> Iterator[Problem]:
     """
     for number, contact in enumerate(scene.rod_contacts):
         if contact.exact:
-            problem = f"{what} knows no contact of rods without a width, which simulate alone finds"
-            remedy = "leave exact out, for a contact that is smooth; or simulate the scene"
-            yield Problem(f"rod_contacts[{number}].exact", problem, remedy)
+            problem = f"{what} knows no contact of rods without a width"
+            yield Problem(f"rod_contacts[{number}].exact", problem, "leave exact out, for a contact that is smooth")
 
 
 def refuse_held_by_contact(scene: scenes.Scene) -> None:

@@ -46,7 +46,7 @@ from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import Ratio
 from cosserat_casadi.rod.tangent import Columns, Tangent
 from cosserat_casadi.rod.viscosity import Viscosity
-from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, RodLoad, Wrench, WrenchAt
+from cosserat_casadi.rod.wrenches import PoseWrench, RodLoad, Wrench, WrenchAt
 
 DRIVE_GROWTH = 6
 """Power of the load factor by which drives of joints move: they turn most where their constraints are rigid."""

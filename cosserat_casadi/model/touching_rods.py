@@ -58,9 +58,7 @@ class TouchingRods:
     @cached_property
     def stiffness(self) -> dict[tuple[str, str], Matrix]:
         """Gᵀ ∂²U G by rods, J: in the strains of a rod, then in the motion [δθ; δr] of its base where that floats."""
-        own, other = (
-            self._motion(rod, at) for rod, at in zip(self.rods, self.load.places, strict=True)
-        )
+        own, other = (self._motion(rod, at) for rod, at in zip(self.rods, self.load.places, strict=True))
         first, second = self.rods
         pressed = -self.force * self._across[1]
         mixed = -own.T @ pressed @ other

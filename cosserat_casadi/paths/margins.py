@@ -12,8 +12,8 @@ from enum import Enum
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.contact.contact_search import AT_TIP, pressure_along
-from cosserat_casadi.equilibrium.contact.contact_state import TIP
+from cosserat_casadi.equilibrium.contact.contact_search import pressure_along
+from cosserat_casadi.equilibrium.contact.contact_state import AT_END, TIP
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.contact_curve import Arrangement
 from cosserat_casadi.paths.gaps_along import GapsAlong
@@ -156,7 +156,7 @@ def nearest(gaps: GapsAlong, taken: list[tuple[float, float]]) -> float | None:
     polished = _polished(gaps, start, spacing)
     # A tip comes down on itself, not on a section beside it.
     tip_is_nearest = values[-1, -1] <= values[element, index] + ROUNDING
-    if polished > TIP - AT_TIP and tip_is_nearest:
+    if polished > TIP - AT_END and tip_is_nearest:
         return TIP
     if any(first - NEAR <= polished <= last + NEAR for first, last in taken):
         return start

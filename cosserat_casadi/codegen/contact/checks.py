@@ -56,6 +56,7 @@ def check_contact(scene: scenes.Scene, asked: Mapping[str, bool]) -> None:
     else:
         problems += _refused_parameters(scene)
         problems += _refused_obstacles(scene)
+        problems += exact_rods(scene, "exported C")
         problems += held_by_contact(scene)
     refuse(problems, ExportError)
 

@@ -262,9 +262,7 @@ class ContactState:
     @property
     def signature(self) -> tuple[tuple[object, ...], ...]:
         """The discrete part of the state: two states with the same signature differ in their places alone."""
-        return tuple(
-            (touch.owner, touch.obstacle, touch.kind, touch.of_body, touch.held_at) for touch in self.touches
-        )
+        return tuple((touch.owner, touch.obstacle, touch.kind, touch.of_body, touch.held_at) for touch in self.touches)
 
     def split(self, sections: Mapping[str, Sequence[float]]) -> ContactState:
         """These contacts with seams at the sections of each rod, by name, that are inside them."""

@@ -45,6 +45,7 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.loads.penetration import Penetration, section_radius
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.contact_pairs import SURFACE_STIFFNESS
 from cosserat_casadi.model.element_ends import element_ends
 from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.numerics.continuation import ContinuationResult, ContinuationSettings, Path, follow
@@ -165,10 +166,11 @@ def cushioned(scene: scenes.Scene, factor: float = 1.0) -> Model:
 
 
 def _softened(contact: scenes.RodContact, scene: scenes.Scene) -> scenes.RodContact:
-    """A contact of rods with a cushion for each two: as wide as few sections tell of."""
+    """A contact of rods with a cushion: so wide that few sections are enough, and as soft as the softest rod."""
     radii = [section_radius(rod_properties(rod), DENSE).min() for rod in scene.rods]
-    width = max(CUSHION * min(radii), THINNEST_CUSHION * max(rod.length for rod in scene.rods))
-    changes = {"exact": False, "width": float(width), "friction": 0.0, "restitution": 0.0}
+    width = float(max(CUSHION * min(radii), THINNEST_CUSHION * max(rod.length for rod in scene.rods)))
+    stiffness = min(SURFACE_STIFFNESS * _unit(rod) * rod.length**3 for rod in scene.rods) / width**2
+    changes = {"exact": False, "width": width, "stiffness": stiffness, "friction": 0.0, "restitution": 0.0}
     return contact.model_copy(update=changes)
 
 
