@@ -40,7 +40,7 @@ from cosserat_casadi.equilibrium.contact.passing_through import (
 from cosserat_casadi.equilibrium.load_path import input_path, load_path
 from cosserat_casadi.equilibrium.relax import can_relax, relaxed
 from cosserat_casadi.equilibrium.smooth_contact import contacts_of_rods
-from cosserat_casadi.equilibrium.smooth_passage import past_no_obstacle
+from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.loads.penetration import Penetration, section_radius
 from cosserat_casadi.maths.typing import FloatArray
@@ -156,7 +156,7 @@ def cushioned(scene: scenes.Scene, factor: float = 1.0) -> Model:
         )
         cushions.append(cushion)
     cushions += _cushions_of_bodies(scene, factor)
-    soft = tuple(_softened(contact, scene) if contact.exact else contact for contact in scene.rod_contacts)
+    soft = tuple(_softened(contact, scene, factor) if contact.exact else contact for contact in scene.rod_contacts)
     changes: dict[str, object] = {"loads": (*scene.loads, *cushions), "rod_contacts": soft}
     if scene.inputs is not None:
         names = [f"{cushion.name}.stiffness" for cushion in cushions]
@@ -165,11 +165,11 @@ def cushioned(scene: scenes.Scene, factor: float = 1.0) -> Model:
     return build(scene.model_copy(update=changes), discretisation)
 
 
-def _softened(contact: scenes.RodContact, scene: scenes.Scene) -> scenes.RodContact:
+def _softened(contact: scenes.RodContact, scene: scenes.Scene, factor: float) -> scenes.RodContact:
     """A contact of rods with a cushion: so wide that few sections are enough, and as soft as the softest rod."""
     radii = [section_radius(rod_properties(rod), DENSE).min() for rod in scene.rods]
     width = float(max(CUSHION * min(radii), THINNEST_CUSHION * max(rod.length for rod in scene.rods)))
-    stiffness = min(SURFACE_STIFFNESS * _unit(rod) * rod.length**3 for rod in scene.rods) / width**2
+    stiffness = factor * min(SURFACE_STIFFNESS * _unit(rod) * rod.length**3 for rod in scene.rods) / width**2
     changes = {"exact": False, "width": width, "stiffness": stiffness, "friction": 0.0, "restitution": 0.0}
     return contact.model_copy(update=changes)
 
@@ -273,19 +273,11 @@ def _under_growing_loads(
 
 
 def _guarded(model: Model, inputs: FloatArray, path: Path) -> Path:
-    """A path without steps through bars and balls."""
+    """A path without steps through bars, balls and other rods."""
     barriers = Barriers(model, inputs)
-    if model.discrete.pairs:
-        path = past_no_obstacle(path, model, (inputs, inputs))
-    if not barriers.watched and not barriers.watched_bodies:
+    if not (barriers.watched or barriers.watched_bodies or model.discrete.pairs):
         return path
-    past_rods = path
-    return replace(
-        path,
-        admits=lambda before, after: (
-            past_rods.admitted(before, after) and not barriers.are_between(before[0], after[0])
-        ),
-    )
+    return replace(path, admits=lambda before, after: not barriers.are_between(before[0], after[0]))
 
 
 def _judged(model: Model, inputs: FloatArray, end: ContinuationResult) -> Solution:
@@ -368,7 +360,7 @@ class Barriers:
         ]
 
     def are_between(self, before: FloatArray, after: FloatArray) -> bool:
-        """Whether a rod or a body comes near the middle of one on the way between two shapes, given by unknowns."""
+        """Whether a rod or body comes near the middle of one, or of a rod, on the way between shapes, by unknowns."""
         for rod, obstacle in self.watched:
             properties = self.model.discrete.rods[rod].properties
             start = self._looked_at[rod].positions(obstacle, before, self.inputs)
@@ -381,10 +373,15 @@ class Barriers:
             way = (pose(before, self.inputs)[0].full().T, pose(after, self.inputs)[0].full().T)
             if ball_is_inside_between(obstacle, inner_radius(body), length, *way, self._deepest_ball(body, obstacle)):
                 return True
-        return False
+        if not self.model.discrete.pairs:
+            return False
+        return SmoothBarriers(self.model).are_between(before, after, (self.inputs, self.inputs))
 
     def give_way(self, x: FloatArray) -> bool:
-        """Whether a rod or a body has sunk into an obstacle by more than half of the depth that is admitted."""
+        """Whether a rod or a body has sunk into an obstacle by more than half of the depth that is admitted.
+
+        Two rods have that are inside each other: the cushion between them would have to keep them apart.
+        """
         shape = self._shape(x)
         rods_sink = any(
             gap_along(shape, rod, obstacle, DENSE).min() < -self._deepest(rod, obstacle) / 2
@@ -394,7 +391,8 @@ class Barriers:
             body_gap(shape, body, obstacle) < -self._deepest_ball(body, obstacle) / 2
             for body, obstacle in self.watched_bodies
         )
-        return rods_sink or bodies_sink
+        rods_meet = any((contact.gap or 0.0) < 0.0 for contact in contacts_of_rods(shape))
+        return rods_sink or bodies_sink or rods_meet
 
     @cached_property
     def _looked_at(self) -> dict[str, LookedAt]:

@@ -42,6 +42,7 @@ from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.inputs import InputLayout
+from cosserat_casadi.model.obstacle_checks import exact_rods
 from cosserat_casadi.numerics.newton import Equations, NewtonSettings, newton
 from cosserat_casadi.numerics.outcome import Outcome
 
