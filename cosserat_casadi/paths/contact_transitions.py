@@ -199,7 +199,7 @@ def entered(arrangement: Arrangement, point: ArcPoint, change: Transition) -> Ar
 
 def _split(change: Transition, sections: Mapping[str, Sequence[float]]) -> Transition:
     """This transition with seams in lines where loads act."""
-    opens = tuple((touch.split(sections[touch.owner]), number, factor) for touch, number, factor in change.opens)
+    opens = tuple((touch.split(sections), number, factor) for touch, number, factor in change.opens)
     return replace(change, state=change.state.split(sections), opens=opens)
 
 

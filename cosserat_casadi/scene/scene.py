@@ -230,17 +230,13 @@ inputs = ["push.force", "cable.tension"]
 
     @property
     def touches_exactly(self) -> bool:
-        """Whether rods touch obstacles or rods exactly, which is found in motion, and of obstacles at rest."""
+        """Whether rods touch obstacles or rods exactly, which is found at rest and in motion."""
         return any(not obstacle.is_smooth for obstacle in self.obstacles) or self.rods_touch_exactly
 
     @property
     def rods_touch_exactly(self) -> bool:
-        """Whether rods touch rods exactly, which is found in motion alone."""
+        """Whether rods touch rods exactly, which is found at rest and in motion."""
         return any(pair.exact for pair in self.rod_contacts)
-
-    def without_exact_rods(self) -> Scene:
-        """The scene whose rods go through each other where they would touch exactly."""
-        return self.model_copy(update={"rod_contacts": ()}) if self.rods_touch_exactly else self
 
     @property
     def rubs(self) -> bool:

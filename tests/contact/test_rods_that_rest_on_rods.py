@@ -212,11 +212,12 @@ def test_lines_cross_only_where_they_meet_on_the_way() -> None:
     along = np.linspace(-1.0, 1.0, 9)[:, None]
     first = along * [1.0, 0.0, 0.0]
     second = along * [0.1, 1.0, 0.0] + [0.05, 0.0, -0.5]
-    beyond = second + [0.0, 0.0, 1.0]
+    up = np.array([0.0, 0.0, 1.0])
+    beyond = second + up
     assert lines_cross_between([first, first], [second, beyond])
-    assert not lines_cross_between([first, first], [second, second + [0.0, 0.0, 0.49]])
+    assert not lines_cross_between([first, first], [second, second + 0.49 * up])
     # It goes by beside the end of the first line.
-    aside = [1.2, 0.0, 0.0]
+    aside = np.array([1.2, 0.0, 0.0])
     assert not lines_cross_between([first, first], [second + aside, beyond + aside])
 
 

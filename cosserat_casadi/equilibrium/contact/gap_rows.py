@@ -99,6 +99,7 @@ def _body_gap(system: System, touch: Touch) -> Matrix:
 def _rods_gap(system: System, touch: Touch) -> list[Matrix]:
     """Gap of two rods at a section of either, and its rate with each place that moves, over the length of the first."""
     own, other = (RodSurface(system, rod) for rod in touch.rods)
+    assert touch.other is not None, "two rods"
     apart = own.centre(touch.start) - other.centre(touch.other)
     normal, _ = across(apart)
     gap = ca.dot(normal, apart) - own.radius(touch.start) - other.radius(touch.other)

@@ -174,7 +174,7 @@ def lines_cross_between(first: Sequence[FloatArray], second: Sequence[FloatArray
 
     def volume(share: FloatArray) -> FloatArray:
         a, b, c, d = corners(share)
-        return np.einsum("...i,...i->...", np.cross(b - a, d - c), c - a)
+        return np.asarray(np.einsum("...i,...i->...", np.cross(b - a, d - c), c - a))
 
     looks = np.linspace(0.0, 1.0, WAYS)
     volumes = np.array([volume(np.full(len(pieces[0]), share)) for share in looks])

@@ -116,4 +116,4 @@ def _lowest(values: FloatArray) -> npt.NDArray[np.bool_]:
     rows, columns = values.shape
     framed = np.pad(values, 1, constant_values=np.inf)
     neighbours = [framed[i : i + rows, j : j + columns] for i in range(3) for j in range(3)]
-    return np.all([values <= other for other in neighbours], axis=0)
+    return np.asarray(np.all([values <= other for other in neighbours], axis=0))
