@@ -19,10 +19,10 @@ from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, variations
 from cosserat_casadi.equilibrium.strain_limits import first_beyond
-from cosserat_casadi.errors import Problem, SceneError, refuse
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.obstacle_checks import exact_rods, refuse_held_by_contact
+from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.numerics.arclength import ArcPoint, ArcSettings, Curve, Monitor
 from cosserat_casadi.numerics.broyden import dense
 from cosserat_casadi.numerics.continuation import Path
@@ -152,7 +152,6 @@ def follow_path(
         problem = "is a path with friction from whose end another one goes on"
         raise SceneError(Problem("first", problem, "leave it out: a path without friction does not depend on the way"))
     followed = _followed(model, name, value, values)
-    refuse(exact_rods(model.scene, "a path"))
     if model.scene.touches_exactly:
         refuse_held_by_contact(model.scene)
         path = follow_contact_path(followed, branch=branch, settings=settings, progress=progress)

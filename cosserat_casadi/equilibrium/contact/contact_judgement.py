@@ -20,6 +20,7 @@ from cosserat_casadi.equilibrium.contact.contact_search import ContactEquilibriu
 from cosserat_casadi.equilibrium.contact.contact_state import Touch, is_sought
 from cosserat_casadi.equilibrium.contact.gaps import body_normal, normals
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_along
+from cosserat_casadi.equilibrium.contact.rod_gaps import distance_of_lines
 from cosserat_casadi.equilibrium.judge import stability_note
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, restricted, stability_of, variations
@@ -231,21 +232,12 @@ class TouchingSections:
         return [_centre_line(self.found, rod, X) for rod, X in zip(self.touch.rods, places, strict=True)]
 
     @property
-    def apart(self) -> FloatArray:
-        """Centre of the first section from that of the second, shape (3,), m."""
-        (first, _, _), (second, _, _) = self._lines
-        return first - second
-
-    @property
     def normal(self) -> FloatArray:
         """Unit vector from the second to the first, shape (3,)."""
-        return np.asarray(self.apart / np.linalg.norm(self.apart))
+        (first, _, _), (second, _, _) = self._lines
+        return np.asarray((first - second) / np.linalg.norm(first - second))
 
     @property
     def curvatures(self) -> FloatArray:
         """Second derivatives of their distance with both abscissae, shape (2, 2), m."""
-        (_, own, own_bend), (_, other, other_bend) = self._lines
-        ways = np.array([own, -other])
-        across = (np.eye(3) - np.outer(self.normal, self.normal)) / np.linalg.norm(self.apart)
-        bends = np.diag([self.normal @ own_bend, -self.normal @ other_bend])
-        return np.asarray(ways @ across @ ways.T + bends)
+        return distance_of_lines(*self._lines)[2]

@@ -168,7 +168,7 @@ class ContactEquilibrium:
             X = np.union1d(DENSE, self._beside_contacts(rod))
             yield from _inside(rod, obstacle.name, X, gap_along(self.solution, rod, obstacle, X), tolerance)
         for rod, other in rod_pairs(self.placed.model.scene):
-            apart = RodsApart(self.solution, (rod, other))
+            apart = RodsApart.of(self.solution, (rod, other))
             valleys = [valley.places[0] for valley in apart.valleys]
             X = np.unique([*DENSE, *self._beside_contacts(rod), *valleys])
             gaps, others = apart.gaps(X)

@@ -39,8 +39,8 @@ from cosserat_casadi.rod.properties import RodProperties
 SECTIONS = DENSE
 """Abscissae that are looked at."""
 
-EVERY = 4
-"""Sections of two rods of which one is looked at on their way."""
+OF_RODS = DENSE[::4]
+"""Abscissae of rods that are looked at on the way past other rods."""
 
 WAYS = 17
 """Shares of their way at which the places of two rods are compared."""
@@ -137,7 +137,7 @@ def passes_through(before: Solution, after: Solution, deepest: float = DEEP) -> 
         if is_inside_between(obstacle, after.model.discrete.rods[rod].properties, start, end, deepest):
             return True
     for rods in rod_pairs(after.model.scene):
-        ways = [[solution.pose(SECTIONS[::EVERY], rod).position for solution in (before, after)] for rod in rods]
+        ways = [[solution.pose(OF_RODS, rod).position for solution in (before, after)] for rod in rods]
         if lines_cross_between(*ways):
             return True
     for body, obstacle in body_pairs(after.model.scene):

@@ -1,10 +1,11 @@
-"""Distances of two solved rods from each other, between the nodes too, and where these are least."""
+"""Distances of two rods from each other, between the nodes too, and where these are least."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +14,7 @@ from cosserat_casadi.equilibrium.contact.gaps import DENSE
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.rod.properties import RodProperties
 
 LOOKED_AT = 4
 """Sections of DENSE of which one is looked at for valleys."""
@@ -36,39 +38,88 @@ class Valley(NamedTuple):
     gap: float
 
 
+class CentreLine(Protocol):
+    """The centre line of a rod, and its radii."""
+
+    @property
+    def length(self) -> float:
+        """Length of the rod in the scene, m."""
+
+    def centres(self, X: FloatArray) -> FloatArray:
+        """World positions at abscissae X, shape (k, 3), m."""
+
+    def radius(self, X: FloatArray) -> FloatArray:
+        """Radii at abscissae X of any shape, m."""
+
+
 @dataclass(frozen=True)
-class RodsApart:
-    """Two rods of a solution.
+class SolvedLine:
+    """The centre line of a rod of a solution.
 
     Attributes:
         solution: the solution.
-        rods: names of the rods.
+        rod: name of the rod.
     """
 
     solution: Solution
-    rods: tuple[str, str]
+    rod: str
+
+    @property
+    def length(self) -> float:
+        """Length of the rod in the scene, m."""
+        return float(self._properties.length)
+
+    def centres(self, X: FloatArray) -> FloatArray:
+        """World positions at abscissae X, shape (k, 3), m."""
+        return self.solution.pose(X, self.rod).position
+
+    def radius(self, X: FloatArray) -> FloatArray:
+        """Radii at abscissae X of any shape, m."""
+        return section_radius(self._properties, X.ravel()).reshape(X.shape)
+
+    @property
+    def _properties(self) -> RodProperties:
+        return self.solution.model.discrete.rods[self.rod].properties
+
+
+@dataclass(frozen=True)
+class RodsApart:
+    """Two rods that may touch.
+
+    Attributes:
+        first: of the rod whose sections are looked at.
+        second: of the other one.
+    """
+
+    first: CentreLine
+    second: CentreLine
+
+    @classmethod
+    def of(cls, solution: Solution, rods: tuple[str, str]) -> RodsApart:
+        """Two rods of a solution, by name."""
+        return cls(*(SolvedLine(solution, rod) for rod in rods))
 
     def gaps(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Gap of each section of the first rod to the second, over the length of the first, and X there, (k,) each.
 
         No gap is less than the true one: the place on the second rod is nearest but for rounding.
         """
-        own = self.solution.pose(X, self.rods[0]).position
+        own = self.first.centres(X)
         places = DENSE[(self._distances(own[:, None], self._positions[1]) - self._radii[1]).argmin(axis=1)]
         spacing = DENSE[1]
         for finer in FINER:
             offsets = spacing * np.array([-1.0, 0.0, 1.0])
             around = np.clip(places, spacing, 1.0 - spacing)[:, None] + offsets
-            positions = self.solution.pose(around.ravel(), self.rods[1]).position.reshape(len(X), 3, 3)
-            values = self._distances(own[:, None], positions) - self._radius(1, around)
+            positions = self.second.centres(around.ravel()).reshape(len(X), 3, 3)
+            values = self._distances(own[:, None], positions) - self.second.radius(around)
             before, middle, after = values.T
             bend = before - 2 * middle + after
             step = np.where(bend > 0.0, (before - after) / np.where(bend > 0.0, 2 * bend, 1.0), np.sign(before - after))
             places = np.clip(around[:, 1] + spacing * np.clip(step, -1.0, 1.0), 0.0, 1.0)
             spacing = DENSE[1] / finer
-        distances = self._distances(own, self.solution.pose(places, self.rods[1]).position)
-        gaps = distances - self._radius(0, X) - self._radius(1, places)
-        return gaps / self._length, places
+        distances = self._distances(own, self.second.centres(places))
+        gaps = distances - self.first.radius(X) - self.second.radius(places)
+        return gaps / self.first.length, places
 
     @cached_property
     def valleys(self) -> list[Valley]:
@@ -92,23 +143,32 @@ class RodsApart:
 
     @cached_property
     def _positions(self) -> list[FloatArray]:
-        return [self.solution.pose(DENSE, rod).position for rod in self.rods]
+        return [line.centres(DENSE) for line in (self.first, self.second)]
 
     @cached_property
     def _radii(self) -> list[FloatArray]:
-        return [self._radius(number, DENSE) for number in range(len(self.rods))]
-
-    def _radius(self, number: int, X: FloatArray) -> FloatArray:
-        properties = self.solution.model.discrete.rods[self.rods[number]].properties
-        return section_radius(properties, X.ravel()).reshape(X.shape)
-
-    @property
-    def _length(self) -> float:
-        return float(self.solution.model.discrete.rods[self.rods[0]].properties.length)
+        return [line.radius(DENSE) for line in (self.first, self.second)]
 
     @staticmethod
     def _distances(first: FloatArray, second: FloatArray) -> FloatArray:
         return np.asarray(np.linalg.norm(first - second, axis=-1))
+
+
+def distance_of_lines(
+    first: Sequence[FloatArray], second: Sequence[FloatArray]
+) -> tuple[float, FloatArray, FloatArray]:
+    """Distance of two lines at a point of either, and its derivatives with both parameters, shape (2,) and (2, 2), m.
+
+    Args:
+        first: the point and the derivatives of the line with its parameter, shape (3,) each, m.
+        second: those of the other line.
+    """
+    (own, way, bend), (other, other_way, other_bend) = first, second
+    distance = float(np.linalg.norm(own - other))
+    normal = (own - other) / distance
+    ways = np.array([way, -other_way])
+    across = (np.eye(3) - np.outer(normal, normal)) / distance
+    return distance, ways @ normal, ways @ across @ ways.T + np.diag([normal @ bend, -normal @ other_bend])
 
 
 def _lowest(values: FloatArray) -> npt.NDArray[np.bool_]:
