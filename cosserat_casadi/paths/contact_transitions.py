@@ -136,7 +136,7 @@ def _along_rods(touch: Touch, others: list[Touch], key: Key) -> Iterator[Transit
     """Transitions of two rods whose place comes to an end of its rod, or leaves it; none where they lie down."""
     places = [touch.start, touch.other]
     if key.watch is Watch.SLOPE:
-        way = WIDER * OPEN
+        way = WIDER * OVER_JOINT
         places[key.end] = BASE + way if places[key.end] == BASE else TIP - way
         new = Touch.of_rods(key.pair, (places[0], places[1]))
         following = ContactState.of([*others, new])

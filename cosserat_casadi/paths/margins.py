@@ -22,7 +22,10 @@ OPEN = 0.005
 """Least width of a line of contact, and least distance of a moving place from the tip, along a path."""
 
 OVER_JOINT = 2e-4
-"""Least distance of the place of a point from the joint of two rods, one of which goes on where the other ends."""
+"""Least distance of the place of a point from the joint of two rods, one of which goes on where the other ends.
+
+So near an end comes the place of rods that touch rods, too: over a longer way the normal of a thin rod turns much.
+"""
 
 NEAR = 0.01
 """Distance along the rod from a contact within which its own margins watch the gap."""
@@ -152,8 +155,8 @@ def _margins_of_rods(touch: Touch, gaps: RodsGaps, number: int) -> dict[Key, Mar
     found = {}
     for side, (place, slope) in enumerate(zip(places, slopes, strict=True)):
         if is_sought(place):
-            found[Key(Watch.TO_TIP, number, pair, side)] = Margin(TIP - place - OPEN, place)
-            found[Key(Watch.TO_BASE, number, pair, side)] = Margin(place - OPEN, place)
+            found[Key(Watch.TO_TIP, number, pair, side)] = Margin(TIP - place - OVER_JOINT, place)
+            found[Key(Watch.TO_BASE, number, pair, side)] = Margin(place - OVER_JOINT, place)
         else:
             # Inwards of a base the abscissa grows.
             found[Key(Watch.SLOPE, number, pair, side)] = Margin(float(slope if place == BASE else -slope), place)

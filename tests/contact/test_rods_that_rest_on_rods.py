@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
-from cosserat_casadi import Outcome, Solution, build, linearise, simulate, solve
+from cosserat_casadi import Outcome, Solution, build, follow, linearise, simulate, solve
 from cosserat_casadi.equilibrium.contact.contact_search import equations_at
 from cosserat_casadi.equilibrium.contact.passing_through import lines_cross_between
 from cosserat_casadi.maths.typing import FloatArray
@@ -278,9 +278,9 @@ def test_smooth_contact_tends_to_it() -> None:
 def test_a_damped_motion_comes_to_rest_on_it() -> None:
     tables = pressed([0, 0, -3e-4], BELOW, accuracy={"modes": 3, "nodes": 6})
     for table in tables["rods"]:
-        table["damping"] = {"time": 0.02}
+        table["damping"] = {"retardation_time": 0.2}
     rest = solve(build(scene_from_dict(tables)))
-    tables["simulation"] = {"duration": 3.0, "start": "unloaded", "tolerance": 1e-3, "frames": 3}
+    tables["simulation"] = {"duration": 4.0, "start": "unloaded", "tolerance": 1e-3, "frames": 3}
     motion = simulate(build(scene_from_dict(tables), moving=True))
     assert motion.converged, motion.message
     for name in "ab":
@@ -302,3 +302,31 @@ def test_rods_whose_bases_float_touch() -> None:
     jacobian = equations.jacobian(z, equations.given)
     differences = central_differences(lambda z: equations.residual(z, equations.given), z, 1e-6)
     assert_allclose(jacobian, differences, rtol=0, atol=1e-8 * np.abs(jacobian).max())
+
+
+@pytest.mark.slow
+def test_a_path_tells_where_rods_touch_slide_to_the_tip_and_lift_off() -> None:
+    other = {"position": [0.096, -0.05, -0.004], "tangent": [0, 1, 0]}
+    tables = pressed([0, 0, -1e-4], other, accuracy={"modes": 5, "nodes": 10})
+    tables["loads"].append({"name": "pull", "kind": "tip_wrench", "rod": "b", "force": [0, 0, 0]})
+    tables["inputs"].append("pull.force")
+    model = build(scene_from_dict(tables))
+    press = follow(model, "push.force", [0.0, 0.0, -1e-4])
+    (touch,) = press.events
+    assert press.converged and touch.kind == "touch" and touch.contact is not None
+    # A beam bends by the gap of 2 mm at a = 0.096 m: P a² (3ℓ − a)/(6 EI).
+    at_touch = 6 * bending(1e-3) * 2e-3 / (0.096**2 * (3 * LENGTH - 0.096))
+    assert_allclose(touch.factor * 1e-4, at_touch, rtol=2e-3, atol=0)
+    assert_allclose(touch.contact.on_rods or (), (0.96, 0.5), rtol=0, atol=1e-3)
+    last = len(press.factor) - 1
+    solved = solve(model, {"push.force": [0.0, 0.0, -1e-4]}, estimate_error=False)
+    assert_allclose(press.solution(last).contacts[0].force, solved.contacts[0].force, rtol=0, atol=1e-12)
+    assert press.smallest_eigenvalue is not None and solved.smallest_eigenvalue is not None
+    assert_allclose(press.smallest_eigenvalue[last], solved.smallest_eigenvalue, rtol=1e-8, atol=0)
+    outwards = follow(model, "pull.force", [1e-4, 0.0, 0.0])
+    slide = next(event for event in outwards.events if event.contact is not None)
+    assert slide.kind == "slide_to_tip" and slide.contact is not None and slide.contact.on_rods is not None
+    assert slide.contact.on_rods[0] == 1.0
+    down = follow(model, "pull.force", [0.0, 0.0, -6e-4])
+    assert down.converged and [event.kind for event in down.events] == ["lift_off"]
+    assert not down.contacts(len(down.factor) - 1)
