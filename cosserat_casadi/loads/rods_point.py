@@ -7,7 +7,7 @@ see equilibrium/contact; no scene file names this load.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any, ClassVar, Literal, final
 
 import casadi as ca
@@ -27,11 +27,6 @@ class RodsPoint(LoadRecord):
     rods: tuple[str, str]
     places: tuple[Any, Any]
     force: float
-
-
-def rods_points(loads: Iterable[LoadRecord]) -> list[RodsPoint]:
-    """The loads between two rods among some."""
-    return [load for load in loads if isinstance(load, RodsPoint)]
 
 
 @final

@@ -15,12 +15,13 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError, refuse
-from cosserat_casadi.loads.rods_point import rods_points
+from cosserat_casadi.loads.rods_point import RodsPoint
 from cosserat_casadi.maths.numbers import Scalar, as_vector, is_symbolic
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.contact_layers import joined_ends, layer_ends
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.rod.discretisation import Discretisation
+from cosserat_casadi.scene.load_records import LoadRecord
 
 NARROWEST = 1e-6
 """Width of an element relative to the rod below which its ends are taken to meet."""
@@ -45,8 +46,10 @@ def places_on(scene: scenes.Scene, rod: str) -> list[Scalar]:
     # So is that of a body.
     places.extend(joint.at for joint in scene.joints if joint.rod == rod and not joint.holds_base)
     places.extend(at for row in scene.disks if row.rod == rod for at in row.places)
-    touching = [place for load in rods_points(scene.loads) for place in zip(load.rods, load.places, strict=True)]
-    places.extend(at for name, at in touching if name == rod)
+    loads: Sequence[LoadRecord] = scene.loads
+    for load in loads:
+        if isinstance(load, RodsPoint):
+            places.extend(at for name, at in zip(load.rods, load.places, strict=True) if name == rod)
     return places
 
 

@@ -160,7 +160,7 @@ class System:
 
     @cached_property
     def coupled_rods(self) -> list[PairTerms | TouchingRods]:
-        """Pairs of rods that push each other smoothly, and those that touch at a section of either."""
+        """Pairs of rods that push each other smoothly, and pairs of rods that touch at a section of either."""
         return [*self.pairs, *(TouchingRods(self, load) for load in self.discrete.rods_points)]
 
     @cached_property

@@ -246,7 +246,7 @@ class Arrangement:
         return self.equations.ends(rod, self.equations.parts(z)[2])
 
     def gaps(self, z: FloatArray, load_factor: float) -> dict[tuple[str, str], GapsAlong]:
-        """Distances of rods from what they may touch, by the names of rod and obstacle, or of both rods."""
+        """Distances of rods from obstacles, and from other rods, by the names of rod and obstacle, or of both rods."""
         nodes = self._nodes(z, load_factor)
         bodies = self.bodies(z, load_factor)
         gaps: dict[tuple[str, str], GapsAlong] = {}

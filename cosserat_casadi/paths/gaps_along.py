@@ -86,7 +86,7 @@ class LineOfNodes:
 
 @dataclass(frozen=True)
 class GapsAlong(ABC):
-    """Distance of a rod's surface from what it may touch along the rod, over its length.
+    """Distance of a rod's surface from an obstacle, or from another rod, along the rod, over its length.
 
     Attributes:
         line: centre line of the rod.

@@ -149,6 +149,7 @@ def margins(arrangement: Arrangement, z: FloatArray, load_factor: float) -> dict
 
 def _margins_of_rods(touch: Touch, gaps: RodsGaps, number: int) -> dict[Key, Margin]:
     """Margins of two rods that touch: of each place its distance from both ends of its rod, or the slope at an end."""
+    assert touch.other is not None, "two rods"
     pair = (touch.owner, touch.obstacle)
     places = (float(touch.start), float(touch.other))
     _, slopes, bends = gaps.between(*places)

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -109,7 +108,8 @@ def contacts_of(found: ContactEquilibrium) -> tuple[Contact, ...]:
 def _normals(found: ContactEquilibrium, touch: Touch) -> FloatArray:
     """Normals at the sections of a contact that carry forces, world axes, shape (k, 3)."""
     if touch.other is not None:
-        return TouchingSections(found, touch).normal[None, :]
+        (own, _, _), (other, _, _) = _lines_of_rods(found, touch)
+        return np.asarray((own - other)[None] / np.linalg.norm(own - other))
     obstacle = found.placed.obstacle(touch.obstacle)
     if touch.of_body:
         return body_normal(found.solution, touch.owner, obstacle)[None, :]
@@ -201,7 +201,7 @@ def _gap_curvatures(found: ContactEquilibrium, touch: Touch) -> FloatArray:
     length = found.placed.model.discrete.rods[touch.owner].properties.length
     if touch.other is not None:
         moves = [is_sought(touch.start), is_sought(touch.other)]
-        return TouchingSections(found, touch).curvatures[np.ix_(moves, moves)] / length
+        return distance_of_lines(*_lines_of_rods(found, touch))[2][np.ix_(moves, moves)] / length
     centre, tangent, bend = _centre_line(found, touch.owner, touch.start)
     obstacle = found.placed.obstacle(touch.obstacle)
     (position,) = seen_positions(found.solution, obstacle, centre[None])
@@ -219,25 +219,6 @@ def _centre_line(found: ContactEquilibrium, rod: str, X: float) -> tuple[FloatAr
     return pose.position, tangent, length**2 * pose.rotation @ np.cross(strain[:3], strain[3:])
 
 
-@dataclass(frozen=True)
-class TouchingSections:
-    """The sections of two rods that touch."""
-
-    found: ContactEquilibrium
-    touch: Touch
-
-    @cached_property
-    def _lines(self) -> list[tuple[FloatArray, FloatArray, FloatArray]]:
-        places = (self.touch.start, self.touch.other)
-        return [_centre_line(self.found, rod, X) for rod, X in zip(self.touch.rods, places, strict=True)]
-
-    @property
-    def normal(self) -> FloatArray:
-        """Unit vector from the second to the first, shape (3,)."""
-        (first, _, _), (second, _, _) = self._lines
-        return np.asarray((first - second) / np.linalg.norm(first - second))
-
-    @property
-    def curvatures(self) -> FloatArray:
-        """Second derivatives of their distance with both abscissae, shape (2, 2), m."""
-        return distance_of_lines(*self._lines)[2]
+def _lines_of_rods(found: ContactEquilibrium, touch: Touch) -> list[tuple[FloatArray, FloatArray, FloatArray]]:
+    """Centres of the sections at which two rods touch, and first and second derivatives with X, shape (3,) each, m."""
+    return [_centre_line(found, rod, X) for rod, X in zip(touch.rods, (touch.start, touch.other), strict=True)]

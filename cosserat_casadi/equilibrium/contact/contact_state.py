@@ -282,7 +282,7 @@ class ContactState:
         return np.array([float(place) for touch in self.touches for place in touch.moving])
 
     def along(self, rod: str) -> list[Touch]:
-        """The contacts of a rod as it has them, in the order of the state: of its own from base to tip."""
+        """The contacts of a rod as it has them, in the order of the state: base to tip, but for a second rod."""
         return [touch.on(rod) for touch in self.touches if rod in touch.rods]
 
     def at(self, places: Sequence[Place]) -> ContactState:

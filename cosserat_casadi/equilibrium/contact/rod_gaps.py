@@ -38,7 +38,7 @@ class Valley(NamedTuple):
     gap: float
 
 
-class CentreLine(Protocol):
+class RodLine(Protocol):
     """The centre line of a rod, and its radii."""
 
     @property
@@ -91,8 +91,8 @@ class RodsApart:
         second: of the other one.
     """
 
-    first: CentreLine
-    second: CentreLine
+    first: RodLine
+    second: RodLine
 
     @classmethod
     def of(cls, solution: Solution, rods: tuple[str, str]) -> RodsApart:
@@ -160,8 +160,8 @@ def distance_of_lines(
     """Distance of two lines at a point of either, and its derivatives with both parameters, shape (2,) and (2, 2), m.
 
     Args:
-        first: the point and the derivatives of the line with its parameter, shape (3,) each, m.
-        second: those of the other line.
+        first: a point of a line, and first and second derivatives of the line with its parameter, shape (3,) each, m.
+        second: a point of the other line, and derivatives there.
     """
     (own, way, bend), (other, other_way, other_bend) = first, second
     distance = float(np.linalg.norm(own - other))
