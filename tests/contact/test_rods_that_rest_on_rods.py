@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
-from cosserat_casadi import Outcome, Solution, build, follow, linearise, simulate, solve
+from cosserat_casadi import Outcome, Solution, build, follow, linearise, simulate, solve, sweep
 from cosserat_casadi.equilibrium.contact.contact_search import equations_at
 from cosserat_casadi.equilibrium.contact.passing_through import lines_cross_between
 from cosserat_casadi.maths.typing import FloatArray
@@ -330,3 +330,14 @@ def test_a_path_tells_where_rods_touch_slide_to_the_tip_and_lift_off() -> None:
     down = follow(model, "pull.force", [0.0, 0.0, -6e-4])
     assert down.converged and [event.kind for event in down.events] == ["lift_off"]
     assert not down.contacts(len(down.factor) - 1)
+
+
+@pytest.mark.slow
+def test_rows_tell_where_rods_touch() -> None:
+    model = build(scene_from_dict(pressed([0, 0, -3e-4], BELOW, accuracy={"modes": 5, "nodes": 10})))
+    table = sweep(model, {"push.force.z": [-1e-6, -3e-4]}, cores=1)
+    (contact,) = solve(model, estimate_error=False).contacts
+    rows = {name: table.values[:, number] for number, name in enumerate(table.columns)}
+    assert_allclose(rows["a.b.contacts"], [0.0, 1.0], rtol=0, atol=0)
+    assert_allclose([rows["a.b.at"][1], rows["a.b.at_other"][1]], contact.on_rods or (), rtol=0, atol=1e-9)
+    assert_allclose([rows[f"a.b.force.{axis}"][1] for axis in "xyz"], contact.force, rtol=1e-9, atol=1e-12)
