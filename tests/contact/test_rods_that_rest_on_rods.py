@@ -15,6 +15,7 @@ from scipy.optimize import fsolve
 from cosserat_casadi import Outcome, Solution, build, follow, linearise, simulate, solve, sweep
 from cosserat_casadi.equilibrium.contact.contact_search import equations_at
 from cosserat_casadi.equilibrium.contact.passing_through import lines_cross_between
+from cosserat_casadi.equilibrium.contact.rod_gaps import distance_of_lines
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene import scene_from_dict
 from tests.derivatives import central_differences
@@ -219,6 +220,23 @@ def test_lines_cross_only_where_they_meet_on_the_way() -> None:
     # It goes by beside the end of the first line.
     aside = np.array([1.2, 0.0, 0.0])
     assert not lines_cross_between([first, first], [second + aside, beyond + aside])
+
+
+def test_derivatives_of_a_distance_of_lines_are_those_by_differences() -> None:
+    points, ways, bends = np.random.default_rng(0).normal(size=(3, 2, 3))
+
+    def lines(at: FloatArray) -> list[list[FloatArray]]:
+        """Two parabolas at a point of either, with their derivatives."""
+        return [
+            [points[k] + ways[k] * t + bends[k] * t**2 / 2, ways[k] + bends[k] * t, bends[k]] for k, t in enumerate(at)
+        ]
+
+    at = np.array([0.3, -0.2])
+    _, slopes, curvatures = distance_of_lines(*lines(at))
+    by_differences = central_differences(lambda t: distance_of_lines(*lines(t))[0], at, 1e-6)
+    assert_allclose(slopes, by_differences[0], rtol=0, atol=1e-8)
+    of_slopes = central_differences(lambda t: distance_of_lines(*lines(t))[1], at, 1e-6)
+    assert_allclose(curvatures, of_slopes, rtol=0, atol=1e-8)
 
 
 def random_pair(seed: int) -> tuple[Table, tuple[float, float], tuple[FloatArray, FloatArray]]:
