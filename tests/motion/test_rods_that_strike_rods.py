@@ -382,7 +382,7 @@ def test_what_exact_contact_of_rods_refuses() -> None:
     assert "is of impacts" in faults({"exact": False})
     assert "has a width" in faults({}, {"obstacles": [plane | {"width": 1e-3}]})
     tables = free_rods()
-    with pytest.raises(SceneError, match="what is at rest knows no contact of rods without a width"):
+    with pytest.raises(SceneError, match="'upper' is free: at rest contact alone would have to hold it"):
         solve(scene_from_dict(tables))
     model = moving(tables)
     with pytest.raises(SceneError, match="a stage of a motion knows no"):
