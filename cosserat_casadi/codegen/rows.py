@@ -22,7 +22,7 @@ from cosserat_casadi.codegen.stability import stability_sources
 from cosserat_casadi.compiling.cache import kept_texts
 from cosserat_casadi.compiling.compiler import compiled_texts, find_compiler
 from cosserat_casadi.compiling.texts import files_in_c, render
-from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs
+from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs, rod_pairs
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.registry import EFFECTS
@@ -52,6 +52,9 @@ CONTACT = ("contacts", "from", "to", "force.x", "force.y", "force.z")
 
 BODY_CONTACT = ("contacts", "force.x", "force.y", "force.z")
 """Columns of a body and an obstacle: 1 if they touch, else 0, and the force (N)."""
+
+RODS_CONTACT = ("contacts", "at", "at_other", "force.x", "force.y", "force.z")
+"""Columns of two rods: number of contacts, the abscissae of the first one on both rods, the resultant on the first."""
 
 POSE = ("x", "y", "z", "qw", "qx", "qy", "qz")
 """Columns of a pose: position (m), quaternion."""
@@ -174,6 +177,7 @@ def row_results(scene: Scene, *, estimate_errors: bool = False, stability: bool 
     poses = [f"{name}.{axis}" for name in posed for axis in POSE]
     # Smooth contact is a load, of which rows do not tell.
     contacts = [f"{rod}.{obstacle.name}.{word}" for rod, obstacle in pairs(scene) for word in CONTACT]
+    contacts += [f"{rod}.{other}.{word}" for rod, other in rod_pairs(scene) for word in RODS_CONTACT]
     contacts += [f"{body.name}.{obstacle.name}.{word}" for body, obstacle in body_pairs(scene) for word in BODY_CONTACT]
     errors = ERRORS if estimate_errors else ()
     verdict = TUBE_STABILITY if scene.tubes else STABILITY

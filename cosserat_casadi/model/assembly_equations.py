@@ -51,6 +51,7 @@ from cosserat_casadi.model.pair_terms import PairTerms
 from cosserat_casadi.model.scene_actuators import CORNER
 from cosserat_casadi.model.scene_constraints import ASSEMBLED, RELEASED, PlacedConstraint
 from cosserat_casadi.model.system import System
+from cosserat_casadi.model.touching_rods import TouchingRods
 from cosserat_casadi.rod.reaction import Reaction
 
 
@@ -183,7 +184,7 @@ class Assembly:
             # The motion of a body moves the obstacle that presses the rod.
             by_deviation = borne.residual_with_body @ self.system.frame_poses[borne.body].motion
             blocks.add(self.discrete.unknowns.strain(borne.rod), self.discrete.deviation(borne.body), by_deviation)
-        for terms in self.system.pairs:
+        for terms in self.system.coupled_rods:
             self._add_pair(blocks, terms)
         for name in self.discrete.frames:
             self._add_balance(blocks, name)
@@ -300,8 +301,8 @@ class Assembly:
             by_shift, _, _ = reaction.with_shift
             blocks.add(strains, deviation, by_shift @ base_R_world @ motion[3:, :])
 
-    def _add_pair(self, blocks: BlockMatrix, terms: PairTerms) -> None:
-        """Blocks, in the rows of the strains of two rods, of the push between them."""
+    def _add_pair(self, blocks: BlockMatrix, terms: PairTerms | TouchingRods) -> None:
+        """Blocks of two rods that push each other in the rows of their strains."""
         for (rod, other), stiffness in terms.stiffness.items():
             rows = self.discrete.unknowns.strain(rod)
             work = stiffness[: rows.stop - rows.start, :] / self.discrete.rods[rod].energy_unit
@@ -406,7 +407,7 @@ class Assembly:
                 by_motion[moved] = by_motion[moved] + derivative
             if borne.body == name:
                 variations.append((self.discrete.unknowns.strain(borne.rod), borne.wrench_with_strain))
-        for terms in self.system.pairs:
+        for terms in self.system.coupled_rods:
             for (rod, other), stiffness in terms.stiffness.items():
                 if self.discrete.unloaded.floating_base(rod) == name:
                     variations += self._by_side(other, -stiffness[self.discrete.rods[rod].size :, :])

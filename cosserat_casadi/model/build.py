@@ -24,7 +24,7 @@ from cosserat_casadi.model.load_assembly import check_loads
 from cosserat_casadi.model.load_potential import loads_have_potential
 from cosserat_casadi.model.model_functions import ModelFunctions
 from cosserat_casadi.model.motion_functions import MotionFunctions
-from cosserat_casadi.model.obstacle_checks import check_obstacles, exact_rods
+from cosserat_casadi.model.obstacle_checks import check_obstacles
 from cosserat_casadi.model.parameters import ParameterLayout, WithParameters
 from cosserat_casadi.model.scene_actuators import actuators_have_potential
 from cosserat_casadi.model.scene_constraints import check_directions, decisive_axes
@@ -299,8 +299,6 @@ def build(
             where it is; or the discretisation is not one of the scene's rods.
     """
     refuse_tubes(scene)
-    if not moving:
-        refuse(list(exact_rods(scene, "what is at rest")))
     check_constraints(scene, moving=moving)
     chosen = discretise(scene) if discretisation is None else discretisation
     if discretisation is not None:

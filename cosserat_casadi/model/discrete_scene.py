@@ -7,7 +7,7 @@ flows of rods with relaxing stress.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf, isfinite
@@ -22,6 +22,7 @@ from cosserat_casadi.constraints.held_directions import CLAMPED
 from cosserat_casadi.constraints.section_constraint import SectionConstraint
 from cosserat_casadi.loads.contact_layer import ContactLayer
 from cosserat_casadi.loads.obstacle_load import section_radii
+from cosserat_casadi.loads.rods_point import RodsPoint
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import Scalar, any_symbolic, as_matrix, as_vector, is_symbolic, known
 from cosserat_casadi.maths.typing import Matrix
@@ -324,6 +325,12 @@ class DiscreteScene:
         if self.given_sections is None:
             return tuple(pairs)
         return tuple(pair.finer(FINER_PAIRS) if any(map(self.draws_apart, pair.rods)) else pair for pair in pairs)
+
+    @cached_property
+    def rods_points(self) -> list[RodsPoint]:
+        """Forces between rods that touch at a section of either."""
+        loads: Sequence[scenes.LoadRecord] = self.scene.loads
+        return [load for load in loads if isinstance(load, RodsPoint)]
 
     @property
     def has_layers(self) -> bool:

@@ -15,11 +15,13 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError, refuse
+from cosserat_casadi.loads.rods_point import RodsPoint
 from cosserat_casadi.maths.numbers import Scalar, as_vector, is_symbolic
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.contact_layers import joined_ends, layer_ends
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.rod.discretisation import Discretisation
+from cosserat_casadi.scene.load_records import LoadRecord
 
 NARROWEST = 1e-6
 """Length of an element, relative to the rod, below which its two ends count as one."""
@@ -44,6 +46,10 @@ def places_on(scene: scenes.Scene, rod: str) -> list[Scalar]:
     # The wrench of a body is a point load too.
     places.extend(joint.at for joint in scene.joints if joint.rod == rod and not joint.holds_base)
     places.extend(at for row in scene.disks if row.rod == rod for at in row.places)
+    loads: Sequence[LoadRecord] = scene.loads
+    for load in loads:
+        if isinstance(load, RodsPoint):
+            places.extend(at for name, at in zip(load.rods, load.places, strict=True) if name == rod)
     return places
 
 

@@ -11,6 +11,7 @@ from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.contact_pairs import named_pairs
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.scene_rods import base_pose
 from cosserat_casadi.obstacles.registry import SURFACES
@@ -38,6 +39,9 @@ WIDTH = "give each {width}; or solve the scene, or leave them out"
 RELAXED = "take relaxed_contact(model) for the model; or give each {width}"
 """Remedy where exact contact is not supported in a problem at rest."""
 
+HELD = "the rod {!r} is free: at rest contact alone would have to hold it"
+"""Problem of a free rod that may touch something exactly."""
+
 SUGGESTED = 5e-3
 """Width over the length of the shortest rod: a thinner layer takes more modes and shorter steps of a load path."""
 
@@ -57,8 +61,9 @@ def refuse_obstacles(scene: scenes.Scene, what: str, remedy: str = WIDTH) -> Non
         remedy: advice, in which ``{width}`` stands for the sentence of :func:`suggested_width`.
 
     Raises:
-        SceneError: the scene has obstacles without a width.
+        SceneError: the scene has obstacles without a width, or rods that touch rods so.
     """
+    refuse(exact_rods(scene, what))
     if scene.touches_exactly:
         problem = f"{what} does not look for contact that is exact: its rods would pass through them"
         raise SceneError(Problem("obstacles", problem, remedy.format(width=suggested_width(scene))))
@@ -73,8 +78,8 @@ def exact_rods(scene: scenes.Scene, what: str) -> Iterator[Problem]:
     """
     for number, contact in enumerate(scene.rod_contacts):
         if contact.exact:
-            problem = f"{what} knows no contact of rods without a width, which motions alone find"
-            remedy = "leave exact out, for a contact that is smooth; or simulate the scene, or export its motions"
+            problem = f"{what} knows no contact of rods without a width"
+            remedy = "leave exact out, for a contact that is smooth; or solve or simulate it, or export its motions"
             yield Problem(f"rod_contacts[{number}].exact", problem, remedy)
 
 
@@ -88,15 +93,17 @@ def refuse_held_by_contact(scene: scenes.Scene) -> None:
 
 
 def held_by_contact(scene: scenes.Scene) -> Iterator[Problem]:
-    """Free rods that touch obstacles by exact contact, or whose bodies do."""
-    # Contact has no friction: along an obstacle such a rod would be in equilibrium nowhere, or anywhere.
+    """Free rods that touch obstacles or rods exactly, or whose bodies touch obstacles so."""
+    # Contact has no friction: along an obstacle such a rod would be in balance nowhere, or anywhere.
     remedy = "give its base a place; or let it move: simulate the scene"
     for obstacle in scene.obstacles:
         for rod in scene.rods:
             concerned = obstacle.concerns(rod.name) or bool(obstacle.bodies)
             if rod.base.free and concerned and not obstacle.is_smooth:
-                problem = f"the rod {rod.name!r} is free: at rest contact alone would have to hold it"
-                yield Problem(f"obstacles.{obstacle.name}", problem, remedy)
+                yield Problem(f"obstacles.{obstacle.name}", HELD.format(rod.name), remedy)
+    for contact, rods in named_pairs(scene) if scene.rod_contacts else ():
+        free = [rod.name for rod in scene.rods if rod.base.free and rod.name in rods and contact.exact]
+        yield from (Problem(f"rod_contacts.{contact.label}", HELD.format(name), remedy) for name in free)
 
 
 def _held_by(scene: scenes.Scene, body: str, rod: RodProperties) -> dict[str, tuple[FloatArray, float]]:

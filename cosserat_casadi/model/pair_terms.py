@@ -205,6 +205,11 @@ class PairTerms:
         """Name of the pair."""
         return self.pair.name
 
+    @property
+    def rods(self) -> tuple[str, str]:
+        """Names of both rods."""
+        return self.pair.rods
+
     @cached_property
     def sides(self) -> tuple[ContactSide, ...]:
         """The sections of both rods; one entry for a rod that touches itself."""

@@ -20,6 +20,7 @@ from cosserat_casadi.loads.load import EFFECTS
 from cosserat_casadi.loads.magnet import MagnetLoad
 from cosserat_casadi.loads.penetration import PenetrationLoad
 from cosserat_casadi.loads.point_wrench import PointWrenchLoad
+from cosserat_casadi.loads.rods_point import RodsPointLoad
 from cosserat_casadi.loads.tip_wrench import TipWrenchLoad
 from cosserat_casadi.scene.families import register
 from cosserat_casadi.scene.load_records import LoadRecord
@@ -41,8 +42,8 @@ for shipped in (
 ):
     register(shipped)
 
-for found in (ContactPointLoad, ContactLineLoad, PenetrationLoad, ContactLayerLoad):
-    # The push of obstacles: no scene file names it as a load, so that the scene format does not have it.
+for found in (ContactPointLoad, ContactLineLoad, RodsPointLoad, PenetrationLoad, ContactLayerLoad):
+    # What obstacles, and rods, press with: no scene file names it as a load, so that the scene format does not know it.
     EFFECTS[found.kind] = found()
 
 

@@ -60,7 +60,7 @@ class SceneEquations:
         if any(rod.discretisation.transport == "permuted" for rod in discrete.rods.values()):
             return ca.jacobian(self.residual, self.system.arguments.x)
         flows = discrete.unknowns.count(BlockKind.FLOW)
-        if discrete.constraints or discrete.cables or discrete.frames or discrete.pairs:
+        if discrete.constraints or discrete.cables or discrete.frames or self.system.coupled_rods:
             jacobian = self.assembly.jacobian
         else:
             # Rods that nothing couples have no row in common.

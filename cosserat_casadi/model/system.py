@@ -35,6 +35,7 @@ from cosserat_casadi.model.riding_bodies import RidingBody
 from cosserat_casadi.model.scene_actuators import SceneActuators
 from cosserat_casadi.model.scene_constraints import PlacedConstraint
 from cosserat_casadi.model.scene_rods import written_base_pose
+from cosserat_casadi.model.touching_rods import TouchingRods
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.inertia import RodInertia, SectionMasses, rod_mass, section_masses
@@ -45,7 +46,7 @@ from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import Ratio
 from cosserat_casadi.rod.tangent import Columns, Tangent
 from cosserat_casadi.rod.viscosity import Viscosity
-from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, RodLoad, Wrench, WrenchAt
+from cosserat_casadi.rod.wrenches import PoseWrench, RodLoad, Wrench, WrenchAt
 
 DRIVE_GROWTH = 6
 """Power of the load factor in the motion of drives of joints: they turn most while their constraints are rigid."""
@@ -156,6 +157,11 @@ class System:
     def pairs(self) -> list[PairTerms]:
         """Pairs of rods that push each other."""
         return [PairTerms(self, pair) for pair in self.discrete.pairs]
+
+    @cached_property
+    def coupled_rods(self) -> list[PairTerms | TouchingRods]:
+        """Pairs of rods that push each other smoothly, and pairs of rods that touch at a section of either."""
+        return [*self.pairs, *(TouchingRods(self, load) for load in self.discrete.rods_points)]
 
     @cached_property
     def drags(self) -> list[RodDrag | BodyDrag]:
@@ -478,7 +484,7 @@ class System:
         """Energy of all rods and their dead forces, J; None if some load is not a dead force."""
         terms = [igm.potential for igm in self.rods.values()]
         known = [term for term in terms if term is not None]
-        if self.discrete.constraints or self.discrete.pairs or len(known) < len(terms):
+        if self.discrete.constraints or self.coupled_rods or len(known) < len(terms):
             return None
         return ca.sum1(ca.vertcat(*known))
 
@@ -489,9 +495,9 @@ class System:
         # Inertia is a dead load too, with its value at this instant.
         return [*dead, *self._pair_wrenches(rod), *self._drag_wrenches(rod), *self._inertia_wrenches(rod)]
 
-    def _pair_wrenches(self, rod: str) -> list[LineWrench]:
-        """Forces of contact with other rods, or with other stretches of the rod, on this rod, base frame."""
-        return [wrench for terms in self.pairs if rod in terms.pair.rods for wrench in terms.wrenches(rod)]
+    def _pair_wrenches(self, rod: str) -> list[Wrench]:
+        """Forces of other rods, and of other stretches of the rod, on it, base frame."""
+        return [wrench for terms in self.coupled_rods if rod in terms.rods for wrench in terms.wrenches(rod)]
 
     def _drag_wrenches(self, rod: str) -> list[Wrench]:
         """Drags of loads on a rod that bodies bear, base frame."""

@@ -15,7 +15,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.checkpoint import Resume
 from cosserat_casadi.motion.contact_guards import CLOSE, ContactPhase
-from cosserat_casadi.motion.exact_contact import TOUCHING, ExactContacts
+from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.facings import facings
 from cosserat_casadi.motion.moving_model import model_at_rest
 from cosserat_casadi.motion.rods_facing import RodsFacing
@@ -44,11 +44,6 @@ GIVEN_TOUCHES = (
     "The rods touch obstacles in the equilibrium that was given, and on at most {modes} modes of a strain the search "
     "for such an equilibrium, with forces at sections, did not settle. Give "
     "another number of accuracy.modes, mostly a larger one; the equilibrium that was given may stay."
-)
-RODS_TOUCH = (
-    "Rods touch each other in the equilibrium of the inputs at t = 0 in which they could pass through each other: no "
-    'equilibrium of rods that touch exactly is found. Give start = "unloaded", other inputs at t = 0, or leave exact '
-    "out of rod_contacts."
 )
 RODS_INSIDE = "Rods that touch each other exactly are inside each other in the unloaded shape: move them apart."
 FREE_TOUCHES = (
@@ -181,8 +176,6 @@ def _started(model: Model, solution: Solution, sentence: str) -> Start:
     unknowns = solution.model.discrete.unknowns
     for key, entries in unknowns.slices.items():
         x[model.discrete.unknowns.slices[key]] = solution.x[entries]
-    if least_gap_of_rods(model, x, _inputs(model, solution)) <= TOUCHING:
-        return Start(x, RODS_TOUCH, found=False)
     near = None if model.scene.touches_exactly else solution
     return Start(np.asarray(x), sentence, equilibrium=near)
 
@@ -220,6 +213,4 @@ def _touching(model: Model, solution: Solution, sentence: str) -> Start:
         refused = GIVEN_TOUCHES if sentence == GIVEN else TOUCHES
         return Start(model.unloaded(), refused.format(modes=modes), found=False, asks_for_modes=True)
     x, arrangement = found
-    if least_gap_of_rods(model, x, inputs) <= TOUCHING:
-        return Start(x, RODS_TOUCH, found=False)
     return Start(x, sentence, phases=arrangement)

@@ -29,13 +29,10 @@ def moving_model(scene: Scene, discretisation: Mapping[str, Discretisation]) -> 
 
 
 def model_at_rest(model: Model) -> Model:
-    """Return the model of statics on the discretisation of a model for a motion: free bases are clamped.
-
-    Exact contact between its rods is left out, because statics does not have it.
-    """
+    """The model of statics on the discretisation of a model for a motion: free bases are clamped, and no unknowns."""
     if model.discrete.scaling is not None:
-        return model.changed(lambda scene: scene.without_exact_rods().held())
-    return _sharing(model.scene.without_exact_rods().held().baked(), model.discretisation, moving=False)
+        return model.changed(lambda scene: scene.held())
+    return _sharing(model.scene.held().baked(), model.discretisation, moving=False)
 
 
 def _sharing(scene: Scene, discretisation: Mapping[str, Discretisation], *, moving: bool) -> Model:

@@ -20,9 +20,15 @@ from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquatio
 from cosserat_casadi.equilibrium.contact.contact_judgement import FLAT
 from cosserat_casadi.equilibrium.contact.contact_search import ContactEquilibrium, contact_equilibrium
 from cosserat_casadi.equilibrium.contact.contact_solve import LEAST_TOLERANCE
-from cosserat_casadi.equilibrium.contact.contact_state import ContactState, Touch, continuations
-from cosserat_casadi.equilibrium.contact.gaps import body_pairs, gap_at, inner_radius, pairs
-from cosserat_casadi.equilibrium.contact.passing_through import SECTIONS, ball_is_inside_between, is_inside_between
+from cosserat_casadi.equilibrium.contact.contact_state import ContactState, Touch, continuations, is_sought
+from cosserat_casadi.equilibrium.contact.gaps import body_pairs, gap_at, inner_radius, pairs, rod_pairs
+from cosserat_casadi.equilibrium.contact.passing_through import (
+    OF_RODS,
+    SECTIONS,
+    ball_is_inside_between,
+    is_inside_between,
+    lines_cross_between,
+)
 from cosserat_casadi.equilibrium.solution import SolvedPoses, poses_between_nodes, rotations
 from cosserat_casadi.equilibrium.stability import ConstrainedVariations, admissible_eigenvalues, restricted, variations
 from cosserat_casadi.loads.penetration import section_radius
@@ -33,7 +39,7 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.numerics.arclength import ArcPoint, ArcSettings, Curve, Monitor
 from cosserat_casadi.numerics.continuation import Path
 from cosserat_casadi.numerics.events import DETERMINANT
-from cosserat_casadi.paths.gaps_along import GapsAlong
+from cosserat_casadi.paths.gaps_along import GapsAlong, LineOfNodes, ObstacleGaps, RodsGaps
 from cosserat_casadi.rod.strain import DiscreteRod
 
 EQUILIBRATIONS = 6
@@ -241,36 +247,36 @@ class Arrangement:
         return self.equations.ends(rod, self.equations.parts(z)[2])
 
     def gaps(self, z: FloatArray, load_factor: float) -> dict[tuple[str, str], GapsAlong]:
-        """Distances of rods from their obstacles, by the names of rod and obstacle."""
+        """Distances of rods from obstacles, and from other rods, by the names of rod and obstacle, or of both rods."""
         nodes = self._nodes(z, load_factor)
         bodies = self.bodies(z, load_factor)
-        gaps = {}
+        gaps: dict[tuple[str, str], GapsAlong] = {}
         for rod, obstacle in pairs(self.scene):
-            discrete_rod = self.equations.nominal.model.discrete.rods[rod]
-            ends = self.ends(rod, z)
-            # The derivative by the abscissa, which moved elements stretch.
-            moved = np.diff(ends) / np.diff(discrete_rod.discretisation.breaks)
-            by_element = (discrete_rod.grid.elements, -1, 3)
-            tangents = nodes[rod].rates.reshape(by_element) / moved[:, None, None]
-            positions = nodes[rod].positions
-            bends = self._bends(rod, nodes[rod], tangents, ends)
+            line = self._line(rod, nodes[rod], z)
             if obstacle.body is not None:
-                # Positions are in the axes of the obstacle's body.
-                body = bodies[obstacle.body]
-                positions = in_axes_of(body, positions)
-                tangents = tangents @ body.rotation
-                bends = bends @ body.rotation
-            gaps[rod, obstacle.name] = GapsAlong(
-                rod=rod,
-                obstacle=obstacle,
-                ends=ends,
-                positions=positions.reshape(by_element),
-                tangents=tangents,
-                bends=bends,
-                radii=section_radius(discrete_rod.properties, np.array([0.0, 1.0])),
-                length=discrete_rod.properties.length,
-            )
+                # The obstacle sees the rod from its body.
+                line = line.seen_from(bodies[obstacle.body])
+            gaps[rod, obstacle.name] = ObstacleGaps(line, obstacle)
+        for rods in rod_pairs(self.scene):
+            gaps[rods] = RodsGaps(*(self._line(rod, nodes[rod], z) for rod in rods))
         return gaps
+
+    def _line(self, rod: str, nodes: Nodes, z: FloatArray) -> LineOfNodes:
+        """The centre line of a rod."""
+        discrete_rod = self.equations.nominal.model.discrete.rods[rod]
+        ends = self.ends(rod, z)
+        # The rate with the abscissa, which moved elements stretch.
+        moved = np.diff(ends) / np.diff(discrete_rod.discretisation.breaks)
+        by_element = (discrete_rod.grid.elements, -1, 3)
+        tangents = nodes.rates.reshape(by_element) / moved[:, None, None]
+        return LineOfNodes(
+            ends=ends,
+            positions=nodes.positions.reshape(by_element),
+            tangents=tangents,
+            bends=self._bends(rod, nodes, tangents, ends),
+            radii=section_radius(discrete_rod.properties, np.array([0.0, 1.0])),
+            length=discrete_rod.properties.length,
+        )
 
     def _bends(self, rod: str, nodes: Nodes, tangents: FloatArray, ends: FloatArray) -> FloatArray:
         """Second derivatives of the positions by X, shape (E, N + 1, 3), without parts along the tangent.
@@ -331,6 +337,13 @@ class Arrangement:
             )
             if is_inside_between(obstacle, properties, start_positions, end_positions):
                 return True
+        for rods in rod_pairs(self.scene):
+            ways = [
+                [self.poses(self.z(point), point.load_factor, OF_RODS, rod).position for point in (start, end)]
+                for rod in rods
+            ]
+            if lines_cross_between(*ways):
+                return True
         pairs_of_bodies = list(body_pairs(self.scene))
         if not pairs_of_bodies:
             return False
@@ -388,11 +401,16 @@ class Arrangement:
                 held.extend(own)
                 continue
             held.append(own[0])
-            _, _, bend = gaps[touch.owner, touch.obstacle].at(touch.start)
-            if bend <= FLAT:
-                held.append(own[1])
+            along = gaps[touch.owner, touch.obstacle]
+            if isinstance(along, RodsGaps):
+                moves = [is_sought(touch.start), is_sought(touch.other)]
+                bends = along.between(float(touch.start), float(touch.other or 0.0))[2][np.ix_(moves, moves)]
             else:
-                hessian = hessian + ends[0] / bend * np.outer(own[1], own[1])
+                bends = np.array([[along.at(touch.start)[2]]])
+            if np.linalg.eigvalsh(bends)[0] <= FLAT:
+                held.extend(own[1:])
+            else:
+                hessian = hessian + ends[0] * own[1:].T @ np.linalg.inv(bends) @ own[1:]
         return admissible_eigenvalues(*restricted(hessian, held, self._variations))
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from itertools import pairwise, product
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -128,12 +128,14 @@ class ContactPath(EquilibriumPath):
         arrangement = self.arrangements[int(self.arrangement[-1])]
         sections = load_sections(arrangement.scene)
         for touch in arrangement.state(self.x[-1]).touches:
-            for place, section in product(touch.moving, sections.get(touch.owner, ())):
-                if abs(place - section) < AT_SECTION:
-                    return (
-                        f" The contact of {touch.owner!r} with {touch.obstacle!r} has come to X = {section:.6g}, where "
-                        "a load or another rod acts: a place is not followed past there. A solve beyond finds it anew."
-                    )
+            for rod, place in touch.sought:
+                for section in sections.get(rod, ()):
+                    if abs(place - section) < AT_SECTION:
+                        return (
+                            f" The contact of {touch.owner!r} with {touch.obstacle!r} has come to X = {section:.6g}, "
+                            "where a load or another rod acts: a place is not followed past there. A solve beyond "
+                            "finds it anew."
+                        )
         return ""
 
 
@@ -263,7 +265,7 @@ class Travel:
         key, X = guard.crossed
         arrangement = self.arrangements[-1]
         _, last = self.points[-1]
-        for change in changes(arrangement, arrangement.z(last), key, X):
+        for change in changes(arrangement, arrangement.z(last), last.load_factor, key, X):
             entry = entered(arrangement, last, change)
             if entry is None:
                 continue
@@ -302,7 +304,8 @@ class Travel:
 def _path_contact(touch: Touch, forces: tuple[float, ...], inside: tuple[SectionForce, ...] = ()) -> PathContact:
     """A contact at its place, with the forces at its ends and at sections inside it, N."""
     start, end = float(touch.start), float(touch.end)
-    return PathContact(touch.obstacle, touch.owner, start, end, touch.kind, forces, touch.of_body, inside)
+    on_rods = None if touch.other is None else (start, float(touch.other))
+    return PathContact(touch.obstacle, touch.owner, start, end, touch.kind, forces, touch.of_body, inside, on_rods)
 
 
 def follow_contact_path(

@@ -15,12 +15,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cosserat_casadi.equilibrium.contact.contact_alternatives import instead_of_pulling
-from cosserat_casadi.equilibrium.contact.contact_state import TIP, ContactState, Touch, load_sections
+from cosserat_casadi.equilibrium.contact.contact_state import BASE, TIP, ContactState, Touch, at_end, load_sections
 from cosserat_casadi.equilibrium.contact.shape_projection import projected
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arclength import ArcPoint
 from cosserat_casadi.numerics.events import Arc
 from cosserat_casadi.paths.contact_curve import Arrangement
+from cosserat_casadi.paths.gaps_along import RodsGaps
 from cosserat_casadi.paths.margins import OPEN, OVER_JOINT, Key, Watch, margins, violated
 
 WIDER = 4.0
@@ -73,19 +74,24 @@ class ArrangementEntry:
     is_event: bool
 
 
-def changes(arrangement: Arrangement, z: FloatArray, key: Key, X: float) -> Iterator[Transition]:
-    """Transitions to other arrangements at a zero of a margin, the likeliest first.
+def changes(arrangement: Arrangement, z: FloatArray, load_factor: float, key: Key, X: float) -> Iterator[Transition]:
+    """Transitions to other arrangements where a margin vanishes, the likeliest first.
 
     Args:
         arrangement: the arrangement that ends.
         z: its last point.
+        load_factor: λ there.
         key: the margin.
         X: abscissa that it belongs to.
     """
     state = arrangement.state(z)
     if key.watch is Watch.GAP:
         rod, obstacle = key.pair
-        yield _added(state, Touch.point(obstacle, rod, X))
+        gaps = arrangement.gaps(z, load_factor)[key.pair]
+        if isinstance(gaps, RodsGaps):
+            yield _added(state, Touch.of_rods(key.pair, (X, at_end(gaps.place(X)))))
+        else:
+            yield _added(state, Touch.point(obstacle, rod, X))
         return
     if key.watch is Watch.BODY_GAP:
         body, obstacle = key.pair
@@ -93,7 +99,9 @@ def changes(arrangement: Arrangement, z: FloatArray, key: Key, X: float) -> Iter
         return
     touch = state.touches[key.number]
     others = [other for number, other in enumerate(state.touches) if number != key.number]
-    if key.watch is Watch.FORCE and not touch.is_line:
+    if touch.other is not None and key.watch is not Watch.FORCE:
+        yield from _along_rods(touch, others, key)
+    elif key.watch is Watch.FORCE and not touch.is_line:
         gap = Watch.BODY_GAP if touch.of_body else Watch.GAP
         yield Transition("lift_off", touch, ContactState.of(others), Key(gap, -1, key.pair))
     elif key.watch is Watch.CURVATURE:
@@ -123,6 +131,26 @@ def changes(arrangement: Arrangement, z: FloatArray, key: Key, X: float) -> Iter
             following = ContactState.of([*others, *option])
             kind = "slide_from_tip" if any(other.is_line for other in option) else "line_to_point"
             yield Transition(kind, touch, following, Key(Watch.GAP, -1, key.pair))
+
+
+def _along_rods(touch: Touch, others: list[Touch], key: Key) -> Iterator[Transition]:
+    """Transitions of two rods whose place comes to an end of its rod, or leaves it; none where they lie down."""
+    places = [touch.start, touch.other]
+    if key.watch is Watch.SLOPE:
+        way = WIDER * OVER_JOINT
+        places[key.end] = BASE + way if places[key.end] == BASE else TIP - way
+        new = Touch.of_rods(key.pair, (places[0], places[1]))
+        following = ContactState.of([*others, new])
+        number = new.sought.index((touch.rods[key.end], places[key.end]))
+        watch = Watch.TO_BASE if places[key.end] == BASE + way else Watch.TO_TIP
+        grows = Key(watch, _number(following, new), key.pair, key.end)
+        yield Transition("slide_from_tip", touch, following, grows, ((new, number, 1.0),), float(places[key.end]))
+    elif key.watch in (Watch.TO_TIP, Watch.TO_BASE):
+        places[key.end] = TIP if key.watch is Watch.TO_TIP else BASE
+        new = Touch.of_rods(key.pair, (places[0], places[1]))
+        following = ContactState.of([*others, new])
+        grows = Key(Watch.SLOPE, _number(following, new), key.pair, key.end)
+        yield Transition("slide_to_tip", touch, following, grows, located=True)
 
 
 def _number(state: ContactState, touch: Touch) -> int:
@@ -199,8 +227,8 @@ def entered(arrangement: Arrangement, point: ArcPoint, change: Transition) -> Ar
 
 
 def _split(change: Transition, sections: Mapping[str, Sequence[float]]) -> Transition:
-    """This transition with seams of lines at the loads."""
-    opens = tuple((touch.split(sections[touch.owner]), number, factor) for touch, number, factor in change.opens)
+    """This transition with seams in lines where loads act."""
+    opens = tuple((touch.split(sections), number, factor) for touch, number, factor in change.opens)
     return replace(change, state=change.state.split(sections), opens=opens)
 
 

@@ -51,6 +51,7 @@ class PathContact:
         ends: force at the point, or at both ends of a line, along the normals there, N; empty at an event.
         of_body: whether it is a body that touches.
         inside: forces at sections inside a line.
+        on_rods: X of either of two rods that touch; None of contact with an obstacle.
     """
 
     obstacle: str
@@ -61,6 +62,7 @@ class PathContact:
     ends: tuple[float, ...]
     of_body: bool = False
     inside: tuple[SectionForce, ...] = ()
+    on_rods: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)

@@ -12,17 +12,20 @@ from enum import Enum
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.contact.contact_search import AT_TIP, pressure_along
-from cosserat_casadi.equilibrium.contact.contact_state import TIP
+from cosserat_casadi.equilibrium.contact.contact_search import pressure_along
+from cosserat_casadi.equilibrium.contact.contact_state import AT_END, BASE, TIP, Touch, is_sought
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.contact_curve import Arrangement
-from cosserat_casadi.paths.gaps_along import GapsAlong
+from cosserat_casadi.paths.gaps_along import GapsAlong, RodsGaps
 
 OPEN = 0.005
 """Least width of a line of contact, and least distance of a moving place from the tip, along a path."""
 
 OVER_JOINT = 2e-4
-"""Least distance of a point of contact from the joint of two rods, one of which continues the other."""
+"""Least distance of the place of a point from the joint of two rods, one of which goes on where the other ends.
+
+So near an end comes the place of rods that touch rods, too: over a longer way the normal of a thin rod turns much.
+"""
 
 NEAR = 0.01
 """Distance along the rod from a contact within which the contact's own margins cover the gap."""
@@ -50,7 +53,7 @@ class Watch(Enum):
     CURVATURE = "second derivative of the gap at a point: below zero the rod lies down"
     SLOPE = "fall of the gap towards a tip that touches: below zero a section inwards is nearer"
     TO_TIP = "distance of the last moving place of a contact from the tip"
-    TO_BASE = "distance of a point from the base of a rod that goes on where another ends"
+    TO_BASE = "distance of a point from the base of a rod that goes on where another ends, or that touches a rod"
     WIDTH = "length of a line of contact"
 
 
@@ -60,9 +63,10 @@ class Key:
 
     Attributes:
         watch: quantity of the margin.
-        number: index of the contact in the arrangement; −1 for a gap.
-        end: index, base to tip, of the section of a line whose force it is.
-        pair: names of rod, or body, and obstacle.
+        number: of the contact in the arrangement; −1 for a gap.
+        end: number of the section of a line whose force it is, base to tip; of two rods that touch the one whose
+            place it is.
+        pair: rod, or body, and obstacle.
     """
 
     watch: Watch
@@ -98,6 +102,11 @@ def margins(arrangement: Arrangement, z: FloatArray, load_factor: float) -> dict
         lever = touch.end - touch.start if touch.is_line else 1.0
         for end, (force, X) in enumerate(zip(ends, touch.carriers, strict=True)):
             found[Key(Watch.FORCE, number, pair, end)] = Margin(float(force) * lever / largest, float(X))
+        if touch.other is not None:
+            along = gaps[pair]
+            assert isinstance(along, RodsGaps)
+            found |= _margins_of_rods(touch, along, number)
+            continue
         if touch.moving:
             last = float(touch.moving[-1])
             passes = touch.owner in arrangement.following and not touch.is_line
@@ -138,10 +147,31 @@ def margins(arrangement: Arrangement, z: FloatArray, load_factor: float) -> dict
     return found
 
 
+def _margins_of_rods(touch: Touch, gaps: RodsGaps, number: int) -> dict[Key, Margin]:
+    """Margins of two rods that touch: of each place its distance from both ends of its rod, or the slope at an end."""
+    assert touch.other is not None, "two rods"
+    pair = (touch.owner, touch.obstacle)
+    places = (float(touch.start), float(touch.other))
+    _, slopes, bends = gaps.between(*places)
+    found = {}
+    for side, (place, slope) in enumerate(zip(places, slopes, strict=True)):
+        if is_sought(place):
+            found[Key(Watch.TO_TIP, number, pair, side)] = Margin(TIP - place - OVER_JOINT, place)
+            found[Key(Watch.TO_BASE, number, pair, side)] = Margin(place - OVER_JOINT, place)
+        else:
+            # Inwards of a base the abscissa grows.
+            found[Key(Watch.SLOPE, number, pair, side)] = Margin(float(slope if place == BASE else -slope), place)
+    moves = [is_sought(place) for place in places]
+    if any(moves):
+        least = np.linalg.eigvalsh(bends[np.ix_(moves, moves)])[0]
+        found[Key(Watch.CURVATURE, number, pair)] = Margin(float(least), places[0])
+    return found
+
+
 def nearest(gaps: GapsAlong, taken: list[tuple[float, float]]) -> float | None:
     """Abscissa of the section that is nearest to an obstacle, away from stretches that already touch it."""
     local = np.linspace(0.0, 1.0, PER_ELEMENT + 1)
-    X = gaps.abscissae(local)
+    X = gaps.line.abscissae(local)
     free = np.ones(X.shape, dtype=bool)
     for start, end in taken:
         free &= (start - NEAR > X) | (end + NEAR < X)
@@ -152,11 +182,11 @@ def nearest(gaps: GapsAlong, taken: list[tuple[float, float]]) -> float | None:
     values = np.where(free, gaps.values(local), np.inf)
     element, index = np.unravel_index(int(values.argmin()), values.shape)
     start = float(X[element, index])
-    spacing = float(gaps.ends[element + 1] - gaps.ends[element]) / PER_ELEMENT
+    spacing = float(gaps.line.ends[element + 1] - gaps.line.ends[element]) / PER_ELEMENT
     polished = _polished(gaps, start, spacing)
     # A tip touches itself first, not a section beside it.
     tip_is_nearest = values[-1, -1] <= values[element, index] + ROUNDING
-    if polished > TIP - AT_TIP and tip_is_nearest:
+    if polished > TIP - AT_END and tip_is_nearest:
         return TIP
     if any(first - NEAR <= polished <= last + NEAR for first, last in taken):
         return start

@@ -51,11 +51,15 @@ def rubbing_entries(result: EquilibriumPath | Motion, rows: int) -> dict[str, An
 
 
 def place_entry(contact: Contact | PathContact) -> dict[str, Any]:
-    """Place of a contact with an obstacle: interval of a rod, or body."""
+    """Where a rod touches an obstacle; or which body does; or two rods, and the places where they are nearest."""
     entry: dict[str, Any] = {"obstacle": contact.obstacle}
     if contact.of_body:
         return {**entry, "body": contact.owner}
-    return {**entry, "rod": contact.owner, "from": contact.start, "to": contact.end}
+    if contact.on_rods is not None:
+        entry = {"rods": [contact.owner, contact.obstacle], "at": contact.on_rods}
+    else:
+        entry |= {"rod": contact.owner}
+    return {**entry, "from": contact.start, "to": contact.end}
 
 
 def point_forces(contact: Contact | PathContact) -> dict[str, Any]:

@@ -84,11 +84,7 @@ def _contact_entry(contact: Contact) -> dict[str, Any]:
     For a smooth contact, which has no such ends: the width of the obstacle and the smallest gap. For a contact between
     rods: the nearest sections, and the resultant on the first rod.
     """
-    entry: dict[str, Any] = place_entry(contact)
-    if contact.on_rods is not None:
-        entry = {"rods": [contact.owner, contact.obstacle], "at": contact.on_rods}
-        entry |= {"from": contact.start, "to": contact.end}
-    entry |= {"force": contact.force, "kind": contact.kind}
+    entry = {**place_entry(contact), "force": contact.force, "kind": contact.kind}
     if contact.width is None:
         entry |= point_forces(contact)
     else:

@@ -1,4 +1,4 @@
-"""Contact of rods with rods, or with themselves: smooth, or, in motion alone, exact."""
+"""Rods that touch rods, or themselves: contact of pairs of rods, which is smooth, or exact."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ width = 5e-4
     )
     exact: StrictBool = Field(
         False,
-        description="whether rods touch without a width, which is found in motion alone: they strike each other",
+        description="whether rods touch without a width, which is found at rest, at points, and in motion",
     )
     restitution: Share = Field(
         0.0,

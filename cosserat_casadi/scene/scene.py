@@ -230,12 +230,12 @@ inputs = ["push.force", "cable.tension"]
 
     @property
     def touches_exactly(self) -> bool:
-        """Whether the scene has exact contact, which is found in motion, and for obstacles at rest too."""
+        """Whether rods touch obstacles or rods exactly, which is found at rest and in motion."""
         return any(not obstacle.is_smooth for obstacle in self.obstacles) or self.rods_touch_exactly
 
     @property
     def rods_touch_exactly(self) -> bool:
-        """Whether the scene has exact contact between rods, which is found in motion alone."""
+        """Whether rods touch rods exactly, which is found at rest and in motion."""
         return any(pair.exact for pair in self.rod_contacts)
 
     def without_exact_rods(self) -> Scene:

@@ -14,7 +14,7 @@ from cosserat_casadi.equilibrium.contact.contact_equations import Grids
 from cosserat_casadi.equilibrium.contact.contact_judgement import judged
 from cosserat_casadi.equilibrium.contact.contact_search import equilibrium_in
 from cosserat_casadi.equilibrium.contact.contact_state import with_contacts
-from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs
+from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs, rod_pairs
 from cosserat_casadi.equilibrium.judge import correct
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.equilibrium.solve import solve
@@ -142,6 +142,8 @@ def _efforts_and_contacts(solution: Any) -> list[float]:
         numbers.extend(solution.actuator(actuator.name).values())
     for rod, obstacle in pairs(scene):
         numbers += _contact_numbers(solution, rod, obstacle.name, of_body=False)
+    for rod, other in rod_pairs(scene):
+        numbers += _contact_numbers(solution, rod, other, of_body=False)
     for body, obstacle in body_pairs(scene):
         numbers += _contact_numbers(solution, body.name, obstacle.name, of_body=True)
     return numbers
@@ -157,12 +159,14 @@ def solved_poses(solution: Any) -> FloatArray:
 def _contact_numbers(solution: Solution, name: str, obstacle: str, *, of_body: bool) -> list[float]:
     """Number of contacts of a rod or a body with an obstacle, and their resultant.
 
-    For a rod the start and end of the contacts stand between the two, NaN without any.
+    Of a rod between the two where the contacts begin and end, NaN without any; of two rods where the first one is.
     """
     wanted = (name, obstacle, of_body)
     contacts = [own for own in solution.contacts if (own.owner, own.obstacle, own.of_body) == wanted]
     first = min((contact.start for contact in contacts), default=np.nan)
     last = max((contact.end for contact in contacts), default=np.nan)
+    if contacts and contacts[0].on_rods is not None:
+        first, last = contacts[0].on_rods
     resultant = sum((contact.force for contact in contacts), start=np.zeros(3)).tolist()
     return [float(len(contacts)), *([] if of_body else [first, last]), *resultant]
 

@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 from cosserat_casadi import Solution, build, export, follow, parse_scene, read_scene, solve
 from cosserat_casadi.codegen.rows import row_results
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids
-from cosserat_casadi.equilibrium.contact.contact_judgement import _gap_curvature
+from cosserat_casadi.equilibrium.contact.contact_judgement import _gap_curvatures
 from cosserat_casadi.equilibrium.contact.contact_search import contact_equilibrium
 from cosserat_casadi.equilibrium.contact.contact_state import state_in, without_contacts
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
@@ -203,7 +203,7 @@ def test_the_gap_curves_as_its_differences_say(touching: Solution) -> None:
     ((rod, disk),) = pairs(equations.scene)
     step = 2e-3
     before, at, after = gap_along(touching, rod, disk, touch.start + step * np.array([-1.0, 0.0, 1.0]))
-    assert_allclose(_gap_curvature(found, touch), (after - 2 * at + before) / step**2, rtol=2e-3, atol=0)
+    assert_allclose(_gap_curvatures(found, touch), (after - 2 * at + before) / step**2, rtol=2e-3, atol=0)
 
 
 @pytest.mark.slow

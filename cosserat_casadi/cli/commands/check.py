@@ -27,9 +27,6 @@ from cosserat_casadi.scene.reading import written_tables
 from cosserat_casadi.scene.varying import VaryingValue, varying_values
 from cosserat_casadi.tubes.robot import robot_of
 
-APART = "The figures are those of rods that pass through each other: contact of rods without a width is of motions."
-"""A sentence on scenes whose rods touch each other exactly."""
-
 
 def check(
     scene: SceneFile,
@@ -67,24 +64,21 @@ def check(
     if scene.is_file():
         varying = varying_values(checked_scene, written_tables(scene, overrides))
     with count_display("Building the model") as show_count:
-        at_rest = checked_scene.without_exact_rods()
-        model = build(at_rest)
-        of_effects = prices_of_effects(at_rest, show_count)
+        model = build(checked_scene)
+        of_effects = prices_of_effects(checked_scene, show_count)
         show_count("Counting the operations of residual and Jacobian", 0, 0)
         cost = price(model)
         show_count("Choosing the ranges of inputs", 0, 0)
-        of_inputs = input_ranges(at_rest, asked)
+        of_inputs = input_ranges(checked_scene, asked)
         show_count("Looking for constraints that lock", 0, 0)
         locking = _locking(model)
     print_check(Console(), model, varying, cost, of_effects)
-    if checked_scene.rods_touch_exactly:
-        Console().print(APART)
     print_ranges(Console(), of_inputs)
     print_locking(Console(), locking)
     if plot is not None:
         _draw(checked_scene, plot)
     if timed:
-        _print_times(at_rest)
+        _print_times(checked_scene)
     if timed and checked_scene.simulation is not None:
         _print_motion_times(checked_scene)
 

@@ -16,7 +16,6 @@ from cosserat_casadi.accuracy.choose import SAMPLES, Choice
 from cosserat_casadi.accuracy.fixing import fixed_by_rod
 from cosserat_casadi.accuracy.models import build
 from cosserat_casadi.accuracy.ranges import Given
-from cosserat_casadi.cli.commands.check import APART
 from cosserat_casadi.cli.commands.tune import choose_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_cases, asked_ranges, check_inputs_stay
@@ -45,6 +44,9 @@ from cosserat_casadi.page.webassembly import find_wasm_compiler
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.tubes.tube_solution import TubeSolution
 from cosserat_casadi.tubes.tube_solve import solve_tubes
+
+APART = "Modes are chosen for rods that pass through each other: contact of rods without a width acts in steps alone."
+"""A sentence on motions in C of rods that touch each other exactly."""
 
 LOAD_CASES = 32
 """Number of load cases in the ranges, in exact contact."""
@@ -233,8 +235,8 @@ def export(
         cases = spread(ranges, samples or LOAD_CASES, case_layout(read))
     exported_scene = _checked_scene(read, asked)
 
-    # Bases that are free in a motion are held where the scene puts them: without that there is no equilibrium. Nor is
-    # there one of rods that touch each other exactly.
+    # Bases that are free in a motion are held where the scene puts them: without that there is no equilibrium. C has
+    # no equilibrium of rods that touch each other exactly.
     solved_scene = exported_scene.held().without_exact_rods() if asked.moves else exported_scene
     chosen_cases = None
     if given_cases is not None:

@@ -257,7 +257,7 @@ def _limits(chosen: Chosen) -> dict[str, Any]:
         "deep": passing_through.DEEP,
         "vanished": VANISHED,
         "near": contact_alternatives.NEAR,
-        "at_tip": contact_search.AT_TIP,
+        "at_tip": contact_state.AT_END,
         "lies_from": contact_alternatives.LIES_FROM,
         "alike": contact_search.ALIKE,
         "fit": contact_equations.FIT,

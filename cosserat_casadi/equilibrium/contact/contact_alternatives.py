@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.contact.contact_state import TIP, ContactState, Touch
+from cosserat_casadi.equilibrium.contact.contact_state import BASE, TIP, ContactState, Touch
 
 NEAR = 0.03
 """Distance along the rod within which a penetration belongs to a contact."""
@@ -51,8 +51,8 @@ def _across(state: ContactState, sections: Mapping[str, Sequence[float]]) -> Ite
     """States with one place moved to the other side of an adjacent section with a load, the nearest first."""
     crossings: list[tuple[float, ContactState]] = []
     places = state.places
-    rods = [touch.owner for touch in state.touches for _ in touch.moving]
-    for index, (rod, place) in enumerate(zip(rods, places.tolist(), strict=True)):
+    sought = [place for touch in state.touches for place in touch.sought]
+    for index, (rod, place) in enumerate(sought):
         stations = np.array([0.0, *sections[rod], TIP])
         before = int(np.searchsorted(stations, place)) - 1
         for section, beyond in ((before, before - 1), (before + 1, before + 2)):
@@ -70,7 +70,11 @@ def otherwise(state: ContactState, sections: Mapping[str, Sequence[float]]) -> I
     yield from _across(state, sections)
     for index, touch in enumerate(state.touches):
         rest = [other for i, other in enumerate(state.touches) if i != index]
-        if touch.is_line:
+        if touch.other is not None:
+            ways = (_otherwise_at(touch.start), _otherwise_at(touch.other))
+            for places in product(*ways):
+                yield ContactState.of([*rest, Touch.of_rods((touch.owner, touch.obstacle), places)])
+        elif touch.is_line:
             for option in instead_of_pulling(touch):
                 yield ContactState.of([*rest, *option])
         elif touch.reaches_tip:
@@ -79,6 +83,13 @@ def otherwise(state: ContactState, sections: Mapping[str, Sequence[float]]) -> I
         elif not touch.of_body:
             yield ContactState.of([*rest, Touch.point(touch.obstacle, touch.owner, TIP)])
         yield ContactState.of(rest)
+
+
+def _otherwise_at(place: float) -> tuple[float, ...]:
+    """A place of rods that touch, then another: the nearer end of the rod, or inwards of an end."""
+    if place in (BASE, TIP):
+        return place, abs(place - 2 * NEAR)
+    return place, float(round(place))
 
 
 def met(state: ContactState, sections: Mapping[str, Sequence[float]]) -> Iterator[ContactState]:
@@ -90,7 +101,7 @@ def met(state: ContactState, sections: Mapping[str, Sequence[float]]) -> Iterato
     """
     of_rods = [touch for touch in state.touches if not touch.of_body]
     for first, second in pairwise(of_rods):
-        same = (first.owner, first.obstacle) == (second.owner, second.obstacle)
+        same = (first.owner, first.obstacle) == (second.owner, second.obstacle) and first.other is None
         if same and second.start - first.end < MET:
             yield _with(state, {first: Touch.line(first.obstacle, first.owner, first.start, second.end), second: None})
             for section in sections[first.owner]:
@@ -103,14 +114,23 @@ def met(state: ContactState, sections: Mapping[str, Sequence[float]]) -> Iterato
         if touch.is_line and touch.end - touch.start < MET:
             yield _with(state, {touch: Touch.point(touch.obstacle, touch.owner, touch.start)})
             continue
-        if TIP - MET < touch.end < TIP:
+        if touch.other is not None:
+            ends = [float(round(place)) if _has_met(place) else place for place in (touch.start, touch.other)]
+            if ends != [touch.start, touch.other]:
+                yield _with(state, {touch: Touch.of_rods((touch.owner, touch.obstacle), (ends[0], ends[1]))})
+        elif TIP - MET < touch.end < TIP:
             yield _with(state, {touch: replace(touch, start=touch.start if touch.is_line else TIP, end=TIP)})
-        for section in sections[touch.owner]:
-            for number, place in enumerate(touch.moving):
+        for number, (rod, place) in enumerate(touch.sought):
+            for section in sections[rod]:
                 if abs(place - section) < MET:
                     places = list(touch.moving)
                     places[number] = section + BEYOND * np.sign(section - place)
                     yield _with(state, {touch: touch.moved(places)})
+
+
+def _has_met(place: float) -> bool:
+    """Whether a place has run into an end of its rod."""
+    return min(place - BASE, TIP - place) < MET
 
 
 def _with(state: ContactState, changes: Mapping[Touch, Touch | None]) -> ContactState:

@@ -31,6 +31,7 @@ from cosserat_casadi.equilibrium.contact.shape_projection import projected
 from cosserat_casadi.equilibrium.load_path import column
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.loads.contact_line import ContactLine
+from cosserat_casadi.loads.rods_point import RodsPoint
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discrete_scene import with_numbers
@@ -121,7 +122,9 @@ class Placed:
         discrete = self.model.discrete
         units = []
         for load in contact_loads(self.model.scene):
-            if isinstance(load, ContactLine):
+            if isinstance(load, RodsPoint):
+                units.append(discrete.tension_unit(load.rods[0]))
+            elif isinstance(load, ContactLine):
                 unit = discrete.tension_unit(load.rod) / discrete.rods[load.rod].length
                 units += [unit] * len(load.force[0])
             elif load.body is not None:
@@ -246,8 +249,9 @@ class Written:
             by_forces: derivative of the balance by the forces.
         """
         x, _, _ = self.unknowns
-        # The balance of a frame has another unit than a rod's; parameters do not change units.
-        if self.system.discrete.frames or self.system.discrete.parameters.entries:
+        # Balances of frames, and of rods beside each other, have units of their own, and parameters change no unit.
+        discrete = self.system.discrete
+        if discrete.frames or discrete.parameters.entries or discrete.rods_points:
             return ca.jacobian(self._gaps, x)
         rows: list[Matrix] = [ca.MX(0, x.shape[0])]
         force = 0

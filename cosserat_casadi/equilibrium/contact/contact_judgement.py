@@ -16,9 +16,10 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.body_obstacles import seen_directions, seen_positions
 from cosserat_casadi.equilibrium.contact.contact_search import ContactEquilibrium
-from cosserat_casadi.equilibrium.contact.contact_state import Touch
+from cosserat_casadi.equilibrium.contact.contact_state import Touch, is_sought
 from cosserat_casadi.equilibrium.contact.gaps import body_normal, normals
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_along
+from cosserat_casadi.equilibrium.contact.rod_gaps import distance_of_lines
 from cosserat_casadi.equilibrium.judge import stability_note
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, restricted, stability_of, variations
@@ -79,17 +80,12 @@ def contacts_of(found: ContactEquilibrium) -> tuple[Contact, ...]:
     contacts = []
     for touch, carried, line in found.parts():
         unit = found.placed.model.discrete.contact_unit(touch.owner, of_body=touch.of_body)
-        obstacle = found.placed.obstacle(touch.obstacle)
         zero = PRESSING * found.largest_force
         # A pull that is rounding alone counts as zero.
         forces = unit * np.where((carried < 0.0) & (carried > -zero), 0.0, carried)
-        if touch.of_body:
-            normal = body_normal(found.solution, touch.owner, obstacle)[None, :]
-        else:
-            normal = normals(found.solution, touch.owner, obstacle, np.array(touch.carriers))
-        total = forces @ normal
+        total = forces @ _normals(found, touch)
         if touch.is_line:
-            total = total + unit * _resultant(found, touch, obstacle, line)
+            total = total + unit * _resultant(found, touch, found.placed.obstacle(touch.obstacle), line)
         ends, sections = touch.sorted_forces(forces)
         contacts.append(
             Contact(
@@ -103,9 +99,21 @@ def contacts_of(found: ContactEquilibrium) -> tuple[Contact, ...]:
                 of_body=touch.of_body,
                 # A section where loads do not jump carries the remainder of the polynomials.
                 inside=tuple(own for own in sections if abs(own.force) > unit * zero),
+                on_rods=None if touch.other is None else (touch.start, touch.other),
             )
         )
     return tuple(contacts)
+
+
+def _normals(found: ContactEquilibrium, touch: Touch) -> FloatArray:
+    """Normals at the sections of a contact that carry forces, world axes, shape (k, 3)."""
+    if touch.other is not None:
+        (own, _, _), (other, _, _) = _lines_of_rods(found, touch)
+        return np.asarray((own - other)[None] / np.linalg.norm(own - other))
+    obstacle = found.placed.obstacle(touch.obstacle)
+    if touch.of_body:
+        return body_normal(found.solution, touch.owner, obstacle)[None, :]
+    return normals(found.solution, touch.owner, obstacle, np.array(touch.carriers))
 
 
 def _resultant(
@@ -130,11 +138,11 @@ class Pressing:
 
     Attributes:
         held: rows of the gaps that stay zero, in their order.
-        sliding: N / d″ in the unit of each balance, shape (n,), by the row of the slope of each sliding point.
+        sliding: entries N (d″)⁻¹ by the rows of the slopes of a point that slides, in the unit of each balance, (n,).
     """
 
     held: list[int]
-    sliding: Mapping[int, FloatArray]
+    sliding: Mapping[tuple[int, int], FloatArray]
 
     def stiffness(self, by_x: FloatArray, by_others: FloatArray) -> FloatArray:
         """Term of sliding points in the derivative of the balance by m arguments, shape (n, m).
@@ -144,8 +152,8 @@ class Pressing:
             by_others: derivative of all gap rows by the arguments, shape (rows, m).
         """
         added = np.zeros((by_x.shape[1], by_others.shape[1]))
-        for row, weights in self.sliding.items():
-            added += np.outer(weights * by_x[row], by_others[row])
+        for (row, other), weights in self.sliding.items():
+            added += np.outer(weights * by_x[row], by_others[other])
         return added
 
 
@@ -166,13 +174,14 @@ def pressing(found: ContactEquilibrium) -> Pressing:
             continue
         held.append(rows[0])
         if touch.moving:
-            bend = _gap_curvature(found, touch)
-            if bend <= FLAT:
-                held.append(rows[1])
-            else:
-                # Each row of the Jacobian has its own unit.
-                unit = model.discrete.rods[touch.owner].energy_unit / model.discrete.unknowns.units
-                sliding[rows[1]] = carried[0] / bend * unit
+            bends = _gap_curvatures(found, touch)
+            if np.linalg.eigvalsh(bends)[0] <= FLAT:
+                held.extend(rows[1:])
+                continue
+            # Every row of the Jacobian is in a unit of its own.
+            unit = model.discrete.rods[touch.owner].energy_unit / model.discrete.unknowns.units
+            for (i, j), share in np.ndenumerate(np.linalg.inv(bends)):
+                sliding[rows[1 + i], rows[1 + j]] = carried[0] * share * unit
     return Pressing(held, sliding)
 
 
@@ -186,18 +195,30 @@ def _eigenvalues(found: ContactEquilibrium) -> FloatArray:
     return admissible_eigenvalues(*restricted(jacobian, list(rows[contacts.held]), variations(model)))
 
 
-def _gap_curvature(found: ContactEquilibrium, touch: Touch) -> float:
-    """Second derivative of the gap with X at a point of contact, over the length."""
-    pose = found.solution.pose(touch.start, touch.owner)
-    strain = found.solution.strain(touch.start, touch.owner)
-    model = found.placed.model
-    length = model.length(touch.owner, found.solution.inputs)
-    tangent = length * pose.rotation @ strain[3:]
-    # The rate of the extension is along the tangent, normal to the obstacle's normal.
-    bend = length**2 * pose.rotation @ np.cross(strain[:3], strain[3:])
+def _gap_curvatures(found: ContactEquilibrium, touch: Touch) -> FloatArray:
+    """Second derivatives of the gap with the places of a point of contact that move, over the length, shape (k, k)."""
+    # Gaps are told over the length that the rod has in the scene.
+    length = found.placed.model.discrete.rods[touch.owner].properties.length
+    if touch.other is not None:
+        moves = [is_sought(touch.start), is_sought(touch.other)]
+        return distance_of_lines(*_lines_of_rods(found, touch))[2][np.ix_(moves, moves)] / length
+    centre, tangent, bend = _centre_line(found, touch.owner, touch.start)
     obstacle = found.placed.obstacle(touch.obstacle)
-    (position,) = seen_positions(found.solution, obstacle, pose.position[None])
+    (position,) = seen_positions(found.solution, obstacle, centre[None])
     first, second = seen_directions(found.solution, obstacle, np.array([tangent, bend]))
-    distance = distance_along(obstacle, position, first, second)
-    # Gaps are relative to the length of the rod in the scene.
-    return distance.bend / model.discrete.rods[touch.owner].properties.length
+    return np.array([[distance_along(obstacle, position, first, second).bend / length]])
+
+
+def _centre_line(found: ContactEquilibrium, rod: str, X: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Position of a section and its first and second derivative with X, shape (3,) each, m."""
+    pose = found.solution.pose(X, rod)
+    strain = found.solution.strain(X, rod)
+    length = found.placed.model.length(rod, found.solution.inputs)
+    tangent = length * pose.rotation @ strain[3:]
+    # The rate of the extension is along the tangent, on which the normal stands.
+    return pose.position, tangent, length**2 * pose.rotation @ np.cross(strain[:3], strain[3:])
+
+
+def _lines_of_rods(found: ContactEquilibrium, touch: Touch) -> list[tuple[FloatArray, FloatArray, FloatArray]]:
+    """Centres of the sections at which two rods touch, and first and second derivatives with X, shape (3,) each, m."""
+    return [_centre_line(found, rod, X) for rod, X in zip(touch.rods, (touch.start, touch.other), strict=True)]

@@ -19,10 +19,12 @@ from cosserat_casadi.equilibrium.contact.contact_alternatives import NEAR, inste
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids, Placed
 from cosserat_casadi.equilibrium.contact.contact_newton import sought
 from cosserat_casadi.equilibrium.contact.contact_state import (
+    AT_END,
     BASE,
     TIP,
     ContactState,
     Touch,
+    at_end,
     given_inputs,
     load_sections,
     state_in,
@@ -36,8 +38,10 @@ from cosserat_casadi.equilibrium.contact.gaps import (
     lies_at_base,
     obstacle_of,
     pairs,
+    rod_pairs,
     runs,
 )
+from cosserat_casadi.equilibrium.contact.rod_gaps import RodsApart
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.chebyshev import legendre_polynomials
 from cosserat_casadi.maths.typing import FloatArray
@@ -49,9 +53,6 @@ MOST_STATES = 24
 
 ROUNDING = 1e-12
 """Force, relative to the largest, that counts as zero."""
-
-AT_TIP = 1e-3
-"""Distance from the tip within which a contact counts as one of the tip."""
 
 OPENING = 0.3
 """Share of the distance to the nearer end of a line, first guess of the stretch that opens inside the line."""
@@ -165,14 +166,14 @@ class ContactEquilibrium:
         """Stretches and bodies that are inside an obstacle by more than a tolerance."""
         for rod, obstacle in pairs(self.placed.model.scene):
             X = np.union1d(DENSE, self._beside_contacts(rod))
-            gaps = gap_along(self.solution, rod, obstacle, X)
-            slopes = np.abs(np.gradient(gaps, X))
-            for stretch in runs(gaps < -tolerance):
-                inside = X[stretch]
-                deepest = int(np.argmin(gaps[stretch]))
-                places = inside[0], inside[-1], inside[deepest]
-                angle = float(slopes[stretch].max())
-                yield Penetrated(rod, obstacle.name, *places, -gaps[stretch][deepest], angle)
+            yield from _inside(rod, obstacle.name, X, gap_along(self.solution, rod, obstacle, X), tolerance)
+        for rod, other in rod_pairs(self.placed.model.scene):
+            apart = RodsApart.of(self.solution, (rod, other))
+            valleys = [valley.places[0] for valley in apart.valleys]
+            X = np.unique([*DENSE, *self._beside_contacts(rod), *valleys])
+            gaps, others = apart.gaps(X)
+            for penetrated in _inside(rod, other, X, gaps, tolerance):
+                yield replace(penetrated, other=float(others[np.searchsorted(X, penetrated.deepest)]))
         for body, obstacle in body_pairs(self.placed.model.scene):
             gap = body_gap(self.solution, body, obstacle)
             if gap < -tolerance:
@@ -217,6 +218,7 @@ class Penetrated:
         depth: depth of that section, over the length of the rod.
         angle: largest angle between the rod and the obstacle, rad; 0 for a body.
         of_body: whether it is a body.
+        other: abscissa of the second of two rods that are inside each other, where they are deepest; else None.
     """
 
     owner: str
@@ -227,11 +229,19 @@ class Penetrated:
     depth: float
     angle: float = 0.0
     of_body: bool = False
+    other: float | None = None
 
     def joined(self, other: Penetrated) -> Penetrated:
         """The union of this stretch and another, from the start of the first to the end of the last."""
         deeper = self if self.depth >= other.depth else other
         return replace(deeper, start=min(self.start, other.start), end=max(self.end, other.end))
+
+    @property
+    def point(self) -> Touch:
+        """A point of contact where the stretch is deepest; at an end of its rods where that is near."""
+        if self.other is not None:
+            return Touch.of_rods((self.owner, self.obstacle), (at_end(self.deepest), at_end(self.other)))
+        return Touch.point(self.obstacle, self.owner, self.deepest if self.deepest < TIP - AT_END else TIP)
 
     def concerns(self, touch: Touch) -> bool:
         """Whether a contact has the rod, or body, and the obstacle of this stretch."""
@@ -244,6 +254,17 @@ class Penetrated:
     def is_along(self, touch: Touch) -> bool:
         """Whether the stretch is inside a line of contact: then its depth is an error of polynomials."""
         return bool(touch.is_line and touch.start < self.deepest < touch.end)
+
+
+def _inside(owner: str, obstacle: str, X: FloatArray, gaps: FloatArray, tolerance: float) -> Iterator[Penetrated]:
+    """Stretches of a rod whose gaps at abscissae X are below zero by more than a tolerance."""
+    slopes = np.abs(np.gradient(gaps, X))
+    for stretch in runs(gaps < -tolerance):
+        inside = X[stretch]
+        deepest = int(np.argmin(gaps[stretch]))
+        places = inside[0], inside[-1], inside[deepest]
+        angle = float(slopes[stretch].max())
+        yield Penetrated(owner, obstacle, *places, -gaps[stretch][deepest], angle)
 
 
 @dataclass
@@ -320,9 +341,9 @@ class Settling:
         ):
             return False
         beside = [
-            min((abs(place - section) for section in self.sections[touch.owner]), default=inf)
+            min((abs(place - section) for section in self.sections[rod]), default=inf)
             for touch in second.touches
-            for place in touch.moving
+            for rod, place in touch.sought
         ]
         return bool(np.all(np.abs(first.places - second.places) < np.minimum(ALIKE, np.array(beside) / 2)))
 
@@ -516,10 +537,14 @@ def _instead_of_entering(penetrated: Penetrated, touch: Touch | None) -> Iterato
     if penetrated.of_body:
         yield (Touch.ball(penetrated.obstacle, penetrated.owner),)
         return
-    here = penetrated.deepest if penetrated.deepest < TIP - AT_TIP else TIP
-    point = Touch.point(penetrated.obstacle, penetrated.owner, here)
+    point = penetrated.point
     if touch is None:
         yield (point,)
+        return
+    if point.other is not None:
+        # An end that lifts off leaves a section inwards to touch; two rods may touch at two places.
+        both, alone = (touch, point), (point,)
+        yield from (alone, both) if any(place is not None for place in touch.held_at) else (both, alone)
         return
     start = min(penetrated.start, touch.start)
     end = max(penetrated.end, touch.end)
@@ -528,8 +553,8 @@ def _instead_of_entering(penetrated: Penetrated, touch: Touch | None) -> Iterato
         yield (line,)
         yield (touch, point)
     elif touch.end == TIP:
-        # If a tip lifts off, a section further inwards touches, or the rod lies down.
-        inwards = Touch.point(penetrated.obstacle, penetrated.owner, min(here, TIP - 2 * NEAR))
+        # A tip that lifts off leaves a section inwards to carry the rod, or the rod lies down.
+        inwards = Touch.point(penetrated.obstacle, penetrated.owner, min(point.start, TIP - 2 * NEAR))
         yield (inwards,)
         yield (line,)
         yield (inwards, touch)

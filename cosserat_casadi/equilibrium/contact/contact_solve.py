@@ -29,7 +29,7 @@ from cosserat_casadi.equilibrium.contact.contact_state import (
     state_in,
     without_contacts,
 )
-from cosserat_casadi.equilibrium.contact.cushions import Pressure, approach, first_state, pressed_balls
+from cosserat_casadi.equilibrium.contact.cushions import Pressure, approach, first_state, pressed_alone
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, runs
 from cosserat_casadi.equilibrium.contact.passing_through import passes_through
 from cosserat_casadi.equilibrium.load_path import column
@@ -240,8 +240,8 @@ class Sharpened:
 
     Attributes:
         shape: the equilibrium.
-        pressures: stretches of held nodes, rod by rod.
-        balls: contacts of held bodies.
+        pressures: stretches of nodes that are held, rod by rod.
+        balls: contacts of bodies that are held, and of rods that press each other.
     """
 
     shape: Solution
@@ -287,7 +287,7 @@ def sharpened(cushioned: Solution) -> Sharpened | None:
         X = _nodes(model, cushion.rod)
         parts = runs(held > 0.0)
         pressures += [Pressure(cushion.rod, cushion.obstacle.name, X[part], held[part] ** 2) for part in parts]
-    return Sharpened(solution, pressures, list(pressed_balls(solution)))
+    return Sharpened(solution, pressures, list(pressed_alone(solution)))
 
 
 def _cushions(model: Model) -> list[Penetration]:

@@ -14,6 +14,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.solution import SectionForce
 from cosserat_casadi.loads.contact_line import ContactLine
 from cosserat_casadi.loads.contact_point import ContactPoint
+from cosserat_casadi.loads.rods_point import RodsPoint
 from cosserat_casadi.maths.numbers import is_symbolic
 from cosserat_casadi.maths.typing import Columns, FloatArray
 from cosserat_casadi.model.element_ends import element_ends
@@ -28,6 +29,9 @@ BASE = 0.0
 TIP = 1.0
 """Abscissa of the tip, which contact cannot move beyond."""
 
+AT_END = 1e-3
+"""Distance from an end of a rod within which it is the end that touches."""
+
 CLEAR = 1e-3
 """Distance of a place from a section with a load below which its solve starts at this distance from the section."""
 
@@ -39,14 +43,17 @@ SHORTEST = 1e-5
 class Touch:
     """One contact with an obstacle: of a rod at a point or along a line, or of a body as a ball.
 
+    Two rods that touch at a section of either are a point of the first on the second, which stands for the obstacle.
+
     Attributes:
-        obstacle: name of the obstacle.
+        obstacle: name of the obstacle, or of the second of two rods.
         owner: name of the rod, or of the body, that touches.
         start: abscissa X at which contact begins; 0 for a body.
         end: abscissa at which it ends; ``start`` for a point.
         is_line: whether a stretch lies on the obstacle.
         of_body: whether it is a body that touches.
-        seams: known abscissae inside a line at which the force per length may jump, base to tip.
+        seams: abscissae inside a line where the force per length may jump, base to tip; they are not sought.
+        other: abscissa of the section of the second rod; None of contact with an obstacle.
     """
 
     obstacle: str
@@ -56,6 +63,7 @@ class Touch:
     is_line: bool = False
     of_body: bool = False
     seams: tuple[Place, ...] = ()
+    other: Place | None = None
 
     @classmethod
     def ball(cls, obstacle: str, body: str) -> Touch:
@@ -68,6 +76,11 @@ class Touch:
         return cls(obstacle, rod, at, at)
 
     @classmethod
+    def of_rods(cls, rods: tuple[str, str], at: tuple[Place, Place]) -> Touch:
+        """Contact of two rods at a section of either."""
+        return cls(rods[1], rods[0], at[0], at[0], other=at[1])
+
+    @classmethod
     def line(cls, obstacle: str, rod: str, start: float, end: float) -> Touch:
         """A stretch that lies on an obstacle."""
         return cls(obstacle, rod, start, end, is_line=True)
@@ -78,16 +91,41 @@ class Touch:
         return (self.start, self.end) if self.is_line else (self.start,)
 
     @property
+    def rods(self) -> tuple[str, ...]:
+        """Names of the rods that have a place of it: one, two of rods that touch, none of a body."""
+        if self.of_body:
+            return ()
+        return (self.owner,) if self.other is None else (self.owner, self.obstacle)
+
+    def on(self, rod: str) -> Touch:
+        """This contact as one of its rods has it: the second of two rods touches the first."""
+        return self if rod == self.owner else Touch.of_rods((self.obstacle, self.owner), (self.other, self.start))
+
+    @property
     def moves(self) -> tuple[bool, ...]:
-        """Whether each end is an unknown place: all but the base and the tip, and no end of a body."""
+        """Whether each of its ends is sought: all but the base and the tip, none of a body."""
         if self.of_body:
             return (False,)
-        return tuple(is_symbolic(end) or BASE < end < TIP for end in self.ends)
+        return tuple(is_sought(end) for end in self.ends)
+
+    @property
+    def sought(self) -> tuple[tuple[str, Place], ...]:
+        """The places that are unknowns, each with its rod: ends of this contact, then of the second of two rods."""
+        own = [(self.owner, end) for end, moves in zip(self.ends, self.moves, strict=True) if moves]
+        if self.other is None or not is_sought(self.other):
+            return tuple(own)
+        return (*own, (self.obstacle, self.other))
+
+    @property
+    def held_at(self) -> tuple[Place | None, ...]:
+        """Each place, of ends and of the second of two rods, that is no unknown; None for one that is."""
+        places = self.ends if self.other is None else (*self.ends, self.other)
+        return tuple(None if is_sought(place) else place for place in places)
 
     @property
     def moving(self) -> tuple[Place, ...]:
-        """The ends with unknown places."""
-        return tuple(end for end, moves in zip(self.ends, self.moves, strict=True) if moves)
+        """The places that are unknowns."""
+        return tuple(place for _, place in self.sought)
 
     @property
     def carriers(self) -> tuple[Place, ...]:
@@ -139,21 +177,25 @@ class Touch:
         """This contact at other places, one for each unknown place."""
         if self.of_body:
             return self
+        if self.other is not None:
+            left = iter(places)
+            own, other = (next(left) if is_sought(place) else place for place in (self.start, self.other))
+            return Touch.of_rods((self.owner, self.obstacle), (own, other))
         ends = [*places, TIP]
         if self.starts_at_base:
             ends.insert(0, BASE)
         ends = ends[: len(self.ends)]
         return replace(self, start=ends[0], end=ends[-1])
 
-    def split(self, sections: Sequence[float]) -> Touch:
-        """This contact with seams at the sections inside it, and places moved off the sections.
+    def split(self, by_rod: Mapping[str, Sequence[float]]) -> Touch:
+        """This contact with seams at the sections that are inside it, and no place on a section.
 
         Args:
-            sections: abscissae at which loads make the shear force, or its rate, jump.
+            by_rod: abscissae of each rod at which loads make the shear force, or its rate, jump, by name.
         """
         if not self.is_line:
-            place = _beside(self.start, sections, CLEAR) if self.moves[0] else self.start
-            return replace(self, start=place, end=place)
+            return self.moved([_beside(place, by_rod[rod], CLEAR) for rod, place in self.sought])
+        sections = by_rod[self.owner]
         start = BASE if self.starts_at_base else _beside(self.start, sections, -CLEAR)
         end = self.end if self.reaches_tip else _beside(self.end, sections, CLEAR)
         return replace(self, start=start, end=end, seams=tuple(X for X in sections if start < X < end))
@@ -184,6 +226,16 @@ class Touch:
             first += count
 
 
+def is_sought(place: Place) -> bool:
+    """Whether a place moves along its rod: it is neither at the base nor at the tip."""
+    return is_symbolic(place) or BASE < place < TIP
+
+
+def at_end(place: float) -> float:
+    """A place on a rod, or the end that it is near."""
+    return float(round(place)) if min(place - BASE, TIP - place) < AT_END else place
+
+
 def _beside(place: float, sections: Sequence[float], way: float) -> float:
     """A place; if it is on a section, moved off it by a given distance."""
     for section in sections:
@@ -208,17 +260,13 @@ class ContactState:
         return cls(tuple(sorted(touches, key=_order)))
 
     @property
-    def signature(self) -> tuple[tuple[str, str, str, bool, bool, bool], ...]:
-        """The discrete part of the state: states with equal signatures differ in their places alone."""
-        return tuple(
-            (touch.owner, touch.obstacle, touch.kind, touch.starts_at_base, touch.reaches_tip, touch.of_body)
-            for touch in self.touches
-        )
+    def signature(self) -> tuple[tuple[object, ...], ...]:
+        """The discrete part of the state: two states with the same signature differ in their places alone."""
+        return tuple((touch.owner, touch.obstacle, touch.kind, touch.of_body, touch.held_at) for touch in self.touches)
 
     def split(self, sections: Mapping[str, Sequence[float]]) -> ContactState:
-        """These contacts with seams at the sections, given for each rod by name, that are inside them."""
-        touches = [touch if touch.of_body else touch.split(sections[touch.owner]) for touch in self.touches]
-        return ContactState(tuple(touches))
+        """These contacts with seams at the sections of each rod, by name, that are inside them."""
+        return ContactState(tuple(touch if touch.of_body else touch.split(sections) for touch in self.touches))
 
     def reseamed(self, places: Mapping[str, Mapping[float, Place]]) -> ContactState:
         """These contacts with moved seams, by the old and new places of each rod, by name: numbers or expressions."""
@@ -234,8 +282,8 @@ class ContactState:
         return np.array([float(place) for touch in self.touches for place in touch.moving])
 
     def along(self, rod: str) -> list[Touch]:
-        """The contacts of a rod, from base to tip."""
-        return [touch for touch in self.touches if touch.owner == rod and not touch.of_body]
+        """The contacts of a rod as it has them, in the order of the state: base to tip, but for a second rod."""
+        return [touch.on(rod) for touch in self.touches if rod in touch.rods]
 
     def at(self, places: Sequence[Place]) -> ContactState:
         """These contacts at other places, numbers or expressions."""
@@ -266,15 +314,16 @@ class ContactState:
         """The contacts, but no two of a rod at one section, where the longer or earlier one stays; tips may share."""
         kept: list[Touch] = []
         for touch in sorted(self.touches, key=lambda touch: touch.start - touch.end):
-            if touch.of_body or all(_are_apart(touch, other) for other in kept if other.owner == touch.owner):
+            if all(_are_apart(touch, other) for other in kept):
                 kept.append(touch)
         return ContactState.of(kept)
 
     @property
     def in_order(self) -> bool:
-        """Whether the places of each rod ascend between base and tip, at least a little apart."""
-        for rod in {touch.owner for touch in self.touches}:
-            ends = [0.0, *(end for touch in self.along(rod) for end in touch.carriers if end != TIP)]
+        """Whether the places of each rod follow each other between base and tip, a little apart."""
+        for rod in {rod for touch in self.touches for rod in touch.rods}:
+            own = sorted(self.along(rod), key=lambda touch: float(touch.start))
+            ends = [0.0, *(end for touch in own for end in touch.carriers if BASE < end < TIP)]
             gaps = np.diff(ends)
             if np.any(gaps < SHORTEST) or ends[-1] > TIP:
                 return False
@@ -291,6 +340,16 @@ class ContactState:
         disks = {body.name: body for body in scene.bodies if body.thickness is not None}
         loads: list[scenes.LoadRecord] = []
         for touch in self.touches:
+            if touch.other is not None:
+                loads.append(
+                    RodsPoint.model_construct(
+                        name=f"contact {len(loads) + 1}",
+                        rods=(touch.owner, touch.obstacle),
+                        places=(touch.start, touch.other),
+                        force=0.0,
+                    )
+                )
+                continue
             obstacle = obstacles[touch.obstacle]
             disk = disks.get(touch.owner) if touch.of_body else None
             for end in touch.carriers:
@@ -344,10 +403,10 @@ def with_contacts(scene: scenes.Scene, state: ContactState, modes: Mapping[str, 
     return scene.model_copy(update=changes)
 
 
-def contact_loads(scene: scenes.Scene) -> list[ContactPoint | ContactLine]:
-    """Loads of a scene that are forces of contacts; no scene file has them."""
+def contact_loads(scene: scenes.Scene) -> list[ContactPoint | ContactLine | RodsPoint]:
+    """The forces of contacts among the loads of a scene, which no scene file names."""
     loads: Sequence[scenes.LoadRecord] = scene.loads
-    return [load for load in loads if isinstance(load, ContactPoint | ContactLine)]
+    return [load for load in loads if isinstance(load, ContactPoint | ContactLine | RodsPoint)]
 
 
 def without_contacts(scene: scenes.Scene) -> scenes.Scene:
@@ -401,6 +460,8 @@ def state_in(scene: scenes.Scene) -> ContactState:
         touches.append(touch)
     of_lines = {(touch.owner, touch.obstacle, at) for touch in touches for at in touch.carriers}
     for point in loads:
+        if isinstance(point, RodsPoint):
+            touches.append(Touch.of_rods(point.rods, point.places))
         if not isinstance(point, ContactPoint):
             continue
         if point.body is not None:
@@ -411,10 +472,13 @@ def state_in(scene: scenes.Scene) -> ContactState:
 
 
 def _are_apart(touch: Touch, other: Touch) -> bool:
-    """Whether two contacts of one rod are at different sections, or at the tip with different obstacles."""
-    if touch.start == TIP and touch.obstacle != other.obstacle:
-        return True
-    return bool(other.end < touch.start or touch.end < other.start)
+    """Whether two contacts touch different rods, or different sections, or at the tip different obstacles."""
+    for rod in set(touch.rods) & set(other.rods):
+        one, another = touch.on(rod), other.on(rod)
+        at_tip = one.start == TIP and one.obstacle != another.obstacle
+        if not (at_tip or another.end < one.start or one.end < another.start):
+            return False
+    return True
 
 
 def _order(touch: Touch) -> tuple[bool, str, Place, str]:

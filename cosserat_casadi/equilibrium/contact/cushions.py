@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.contact_state import TIP, ContactState, Touch
+from cosserat_casadi.equilibrium.contact.contact_state import TIP, ContactState, Touch, at_end
 from cosserat_casadi.equilibrium.contact.gaps import (
     DENSE,
     ball_radius,
@@ -28,6 +28,7 @@ from cosserat_casadi.equilibrium.contact.gaps import (
     gap_along,
     inner_radius,
     pairs,
+    rod_pairs,
     runs,
 )
 from cosserat_casadi.equilibrium.contact.passing_through import (
@@ -38,10 +39,13 @@ from cosserat_casadi.equilibrium.contact.passing_through import (
 )
 from cosserat_casadi.equilibrium.load_path import input_path, load_path
 from cosserat_casadi.equilibrium.relax import can_relax, relaxed
+from cosserat_casadi.equilibrium.smooth_contact import contacts_of_rods
+from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.loads.penetration import Penetration
+from cosserat_casadi.loads.penetration import Penetration, section_radius
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.contact_pairs import SURFACE_STIFFNESS
 from cosserat_casadi.model.element_ends import element_ends
 from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.numerics.continuation import ContinuationResult, ContinuationSettings, Path, follow
@@ -72,6 +76,12 @@ BALL_STIFFNESS = 1e5
 
 THIN_BALL_FORCE = 40.0
 """Least stiffness times the square of the distance to the middle: at half this distance it pushes with 10 EI/ℓ²."""
+
+CUSHION = 0.5
+"""Width of the cushion between two rods, over the radius of the thinnest rod."""
+
+THINNEST_CUSHION = 0.01
+"""Least width of that, over the length of the longest rod."""
 
 LONG = 0.2
 """Length of a stretch of pressure above which a line of contact is tried before a point."""
@@ -146,7 +156,8 @@ def cushioned(scene: scenes.Scene, factor: float = 1.0) -> Model:
         )
         cushions.append(cushion)
     cushions += _cushions_of_bodies(scene, factor)
-    changes: dict[str, object] = {"loads": (*scene.loads, *cushions)}
+    soft = tuple(_softened(contact, scene, factor) if contact.exact else contact for contact in scene.rod_contacts)
+    changes: dict[str, object] = {"loads": (*scene.loads, *cushions), "rod_contacts": soft}
     if scene.inputs is not None:
         names = [f"{cushion.name}.stiffness" for cushion in cushions]
         names += [f"{cushion.name}.raised" for cushion in cushions if cushion.rod is not None]
@@ -154,13 +165,23 @@ def cushioned(scene: scenes.Scene, factor: float = 1.0) -> Model:
     return build(scene.model_copy(update=changes), discretisation)
 
 
+def _softened(contact: scenes.RodContact, scene: scenes.Scene, factor: float) -> scenes.RodContact:
+    """A contact of rods with a cushion: so wide that few sections are enough, and as soft as the softest rod."""
+    radii = [section_radius(rod_properties(rod), DENSE).min() for rod in scene.rods]
+    width = float(max(CUSHION * min(radii), THINNEST_CUSHION * max(rod.length for rod in scene.rods)))
+    stiffness = factor * min(SURFACE_STIFFNESS * _unit(rod) * rod.length**3 for rod in scene.rods) / width**2
+    changes = {"exact": False, "width": width, "stiffness": stiffness, "friction": 0.0, "restitution": 0.0}
+    return contact.model_copy(update=changes)
+
+
 def _coarse(scene: scenes.Scene, rod: scenes.Rod) -> Discretisation:
     """Coarse elements of a rod, with nodes no farther apart than the thickness of the thinnest bar."""
     own = element_ends(scene, rod.name)
-    if not any(obstacle.concerns(rod.name) for obstacle in scene.obstacles):
+    meets_rods = any(rod.name in rods for rods in rod_pairs(scene))
+    if not (meets_rods or any(obstacle.concerns(rod.name) for obstacle in scene.obstacles)):
         return Discretisation((MODES_ALONE,) * len(rod.admitted), NODES, own)
-    # Element ends that are too close to an end that loads ask for are left out.
-    thinnest = max(_thinness(obstacle, rod) for obstacle in scene.obstacles)
+    # None as short as the distance of an end of the loads from one of ours may be.
+    thinnest = max((_thinness(obstacle, rod) for obstacle in scene.obstacles), default=0.0)
     # The ratio may be beyond all range: it is bounded before it becomes a whole number.
     elements = max(ELEMENTS, ceil(min(thinnest / (2 * NODES), MOST_ELEMENTS)))
     further = [end for end in np.linspace(0.0, 1.0, elements + 1) if np.abs(end - own).min() > 0.2 / elements]
@@ -252,9 +273,9 @@ def _under_growing_loads(
 
 
 def _guarded(model: Model, inputs: FloatArray, path: Path) -> Path:
-    """A path without steps through bars and balls."""
+    """A path without steps through bars, balls and other rods."""
     barriers = Barriers(model, inputs)
-    if not barriers.watched and not barriers.watched_bodies:
+    if not (barriers.watched or barriers.watched_bodies or model.discrete.pairs):
         return path
     return replace(path, admits=lambda before, after: not barriers.are_between(before[0], after[0]))
 
@@ -287,11 +308,14 @@ def first_state(solution: Solution) -> ContactState:
         # The pressure of cushions is quadratic in the depth.
         pressed = [Pressure(rod, obstacle.name, DENSE[part], gaps[part] ** 2) for part in runs(gaps < 0.0)]
         touches += [pressure.touch() for pressure in pressed]
-    return ContactState.of([*touches, *pressed_balls(solution)])
+    return ContactState.of([*touches, *pressed_alone(solution)])
 
 
-def pressed_balls(solution: Solution) -> Iterator[Touch]:
-    """The contacts of bodies that have sunk into cushions."""
+def pressed_alone(solution: Solution) -> Iterator[Touch]:
+    """The contacts of bodies that have sunk into cushions, and of rods that press each other."""
+    for contact in contacts_of_rods(solution):
+        assert contact.on_rods is not None, "two rods"
+        yield Touch.of_rods((contact.owner, contact.obstacle), (at_end(contact.on_rods[0]), at_end(contact.on_rods[1])))
     for body, obstacle in body_pairs(solution.model.scene):
         if body_gap(solution, body, obstacle) < 0.0:
             yield Touch.ball(obstacle.name, body.name)
@@ -336,7 +360,7 @@ class Barriers:
         ]
 
     def are_between(self, before: FloatArray, after: FloatArray) -> bool:
-        """Whether a rod or a body comes near the middle of a barrier between two shapes, given by unknowns."""
+        """Whether a rod or body comes near the middle of one, or of a rod, on the way between shapes, by unknowns."""
         for rod, obstacle in self.watched:
             properties = self.model.discrete.rods[rod].properties
             start = self._looked_at[rod].positions(obstacle, before, self.inputs)
@@ -349,10 +373,15 @@ class Barriers:
             way = (pose(before, self.inputs)[0].full().T, pose(after, self.inputs)[0].full().T)
             if ball_is_inside_between(obstacle, inner_radius(body), length, *way, self._deepest_ball(body, obstacle)):
                 return True
-        return False
+        if not self.model.discrete.pairs:
+            return False
+        return SmoothBarriers(self.model).are_between(before, after, (self.inputs, self.inputs))
 
     def give_way(self, x: FloatArray) -> bool:
-        """Whether a rod or a body has sunk into an obstacle by more than half of the admitted depth."""
+        """Whether a rod or a body has sunk into an obstacle by more than half of the depth that is admitted.
+
+        Two rods have that are inside each other: the cushion between them would have to keep them apart.
+        """
         shape = self._shape(x)
         rods_sink = any(
             gap_along(shape, rod, obstacle, DENSE).min() < -self._deepest(rod, obstacle) / 2
@@ -362,7 +391,8 @@ class Barriers:
             body_gap(shape, body, obstacle) < -self._deepest_ball(body, obstacle) / 2
             for body, obstacle in self.watched_bodies
         )
-        return rods_sink or bodies_sink
+        rods_meet = any((contact.gap or 0.0) < 0.0 for contact in contacts_of_rods(shape))
+        return rods_sink or bodies_sink or rods_meet
 
     @cached_property
     def _looked_at(self) -> dict[str, LookedAt]:

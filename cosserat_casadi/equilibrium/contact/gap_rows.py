@@ -19,11 +19,12 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.contact_state import ContactState, Place, Touch
+from cosserat_casadi.equilibrium.contact.contact_state import ContactState, Place, Touch, is_sought
 from cosserat_casadi.equilibrium.contact.gaps import obstacle_of, support_of
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
 from cosserat_casadi.loads.load import polynomials_at
 from cosserat_casadi.loads.obstacle_load import section_radii
+from cosserat_casadi.loads.rods_point import across
 from cosserat_casadi.maths.numbers import Scalar, as_matrix, is_symbolic, known
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.floating_frames import FrameName
@@ -48,6 +49,9 @@ def gap_rows(system: System, state: ContactState, modes: Mapping[str, int], forc
         if touch.of_body:
             rows.append(_body_gap(system, touch))
             continue
+        if touch.other is not None:
+            rows += _rods_gap(system, touch)
+            continue
         distances = Distances(system, touch.owner, obstacle_of(system.discrete.scene, touch.obstacle))
         for end, moves in zip(touch.carriers, touch.carriers_move, strict=True):
             gap, slope = distances.at(end)
@@ -68,6 +72,9 @@ def force_widths(state: ContactState, modes: Mapping[str, int]) -> list[Place | 
     """
     widths: list[Place | None] = []
     for touch in state.touches:
+        if touch.other is not None:
+            widths += [1.0, *(None for _ in touch.sought)]
+            continue
         for moves in touch.carriers_move:
             widths.append(1.0)
             if moves:
@@ -89,22 +96,34 @@ def _body_gap(system: System, touch: Touch) -> Matrix:
     return gap
 
 
+def _rods_gap(system: System, touch: Touch) -> list[Matrix]:
+    """Gap of two rods at a section of either, and its rate with each place that moves, over the length of the first."""
+    own, other = (RodSurface(system, rod) for rod in touch.rods)
+    assert touch.other is not None, "two rods"
+    apart = own.centre(touch.start) - other.centre(touch.other)
+    normal, _ = across(apart)
+    gap = ca.dot(normal, apart) - own.radius(touch.start) - other.radius(touch.other)
+    sides = [(own, touch.start, normal), (other, touch.other, -normal)]
+    slopes = [ca.dot(normal, side.rate(place)) - side.taper for side, place, normal in sides if is_sought(place)]
+    length = system.discrete.rods[touch.owner].properties.length
+    return [row / length for row in (gap, *slopes)]
+
+
 @dataclass(frozen=True)
-class Distances:
-    """Distances of a rod's surface from an obstacle, over the length of the rod, as expressions.
+class RodSurface:
+    """Sections of a rod at places of contact, as expressions.
 
     Attributes:
         system: the scene.
         rod: name of the rod.
-        obstacle: the obstacle.
     """
 
     system: System
     rod: str
-    obstacle: scenes.ObstacleRecord
 
     @property
-    def _discrete_rod(self) -> DiscreteRod:
+    def discrete(self) -> DiscreteRod:
+        """The constant matrices of the rod."""
         return self.system.discrete.rods[self.rod]
 
     @cached_property
@@ -114,40 +133,63 @@ class Distances:
     @cached_property
     def _radii(self) -> tuple[Scalar, Scalar]:
         """Radius at base and tip, between which it is linear, m."""
-        radii = section_radii(self._discrete_rod.properties, np.array([0.0, 1.0]))
+        radii = section_radii(self.discrete.properties, np.array([0.0, 1.0]))
         base, tip = (radii[0], radii[1]) if is_symbolic(radii) else known(radii).tolist()
         return base, tip
 
-    def _radius(self, X: Place) -> Place:
+    def radius(self, X: Place) -> Place:
+        """Radius of a section, m."""
+        base, _ = self._radii
+        return base + X * self.taper
+
+    def centre(self, X: Scalar) -> Matrix:
+        """World position of the section at an end of an element, 3×1, m."""
+        return self.system.position_at(self.rod, self.discrete.grid.node_at(X))
+
+    @property
+    def taper(self) -> Scalar:
+        """Rate of the radius with X, m."""
         base, tip = self._radii
-        return base + X * (tip - base)
+        return tip - base
 
-    def _gap(self, node: int, X: Place) -> tuple[Matrix, Matrix]:
-        """Distance of the surface at a node, m, and the normal of the obstacle there, in the obstacle's axes."""
-        shape = self.system.shapes[self.rod]
-        position = self.system.base(self.rod).position + self._world_R_base @ shape.position_at(node)
-        distance, normal, _ = surface(self.obstacle)(self.system.seen_from(self.obstacle.body, position))
-        return distance - self._radius(X), normal
-
-    def at(self, X: Scalar) -> tuple[Matrix, Matrix]:
-        """Distance and its derivative by X at an end of an element, over the length."""
-        grid = self._discrete_rod.grid
+    def rate(self, X: Scalar) -> Matrix:
+        """Rate of the centre with X at an end of an element, world axes, 3×1, m."""
+        grid = self.discrete.grid
         node = grid.node_at(X)
-        gap, normal = self._gap(node, X)
         tangent = self._world_R_base @ self.system.shapes[self.rod].tangent[:, node]
-        tangent = self.system.turned_to(self.obstacle.body, tangent)
-        # The tangent is the derivative by the coordinate of the integrals, which a moving element stretches.
+        # The tangent is the rate of the coordinate that integrals run over, which a moving element stretches.
         rate = grid.rates_in(grid.element_of_node[[node]])
         if rate is not None:
             tangent = tangent / as_matrix(rate)[0]
-        base, tip = self._radii
-        slope = ca.dot(normal, tangent) - (tip - base)
-        length = self._discrete_rod.properties.length
+        return tangent
+
+
+@dataclass(frozen=True)
+class Distances(RodSurface):
+    """Distances of a rod's surface from an obstacle, over the length of the rod, as expressions.
+
+    Attributes:
+        obstacle: the obstacle.
+    """
+
+    obstacle: scenes.ObstacleRecord
+
+    def _gap(self, node: int, X: Place) -> tuple[Matrix, Matrix]:
+        """Distance of the surface at a node, m, and the normal of the obstacle there, in the axes it is given in."""
+        position = self.system.position_at(self.rod, node)
+        distance, normal, _ = surface(self.obstacle)(self.system.seen_from(self.obstacle.body, position))
+        return distance - self.radius(X), normal
+
+    def at(self, X: Scalar) -> tuple[Matrix, Matrix]:
+        """Distance and its rate with X at an end of an element, over the length."""
+        gap, normal = self._gap(self.discrete.grid.node_at(X), X)
+        slope = ca.dot(normal, self.system.turned_to(self.obstacle.body, self.rate(X))) - self.taper
+        length = self.discrete.properties.length
         return gap / length, slope / length
 
     def moments(self, start: Scalar, end: Scalar, count: int) -> Matrix:
         """∫ P_j (d − ρ) over a stretch, relative to it, for the first Legendre polynomials, count×1."""
-        grid = self._discrete_rod.grid
+        grid = self.discrete.grid
         nodes = grid.nodes_in(start, end)
         X = grid.nodes_at(nodes)
         width = end - start
@@ -155,4 +197,4 @@ class Distances:
         polynomials = as_matrix(polynomials_at(count, (X - start) / width))
         # Weights of the whole rod are scaled: over the stretch they add up to one.
         weights = grid.weights[nodes] / grid.weights[nodes].sum()
-        return polynomials @ (ca.DM(weights) * gaps) / self._discrete_rod.properties.length
+        return polynomials @ (ca.DM(weights) * gaps) / self.discrete.properties.length

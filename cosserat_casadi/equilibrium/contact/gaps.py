@@ -15,6 +15,7 @@ from cosserat_casadi.equilibrium.solution import Contact, Solution, SolvedPoses
 from cosserat_casadi.loads.disk_reach import disk_reach
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.contact_pairs import named_pairs
 from cosserat_casadi.rod.properties import RodProperties
 
 DENSE = np.linspace(0.0, 1.0, 801)
@@ -50,6 +51,13 @@ def _distinct(obstacles: Sequence[scenes.ObstacleRecord]) -> Iterator[scenes.Obs
         if shape not in shapes:
             shapes.append(shape)
             yield obstacle
+
+
+def rod_pairs(scene: scenes.Scene) -> Iterator[tuple[str, str]]:
+    """Every two rods that may touch each other exactly."""
+    for contact, rods in named_pairs(scene):
+        if contact.exact:
+            yield rods
 
 
 def obstacle_of(scene: scenes.Scene, name: str) -> scenes.ObstacleRecord:

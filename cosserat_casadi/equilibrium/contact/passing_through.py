@@ -10,7 +10,7 @@ halved.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -25,6 +25,7 @@ from cosserat_casadi.equilibrium.contact.gaps import (
     body_pairs,
     inner_radius,
     pairs,
+    rod_pairs,
     section_gaps,
     seen_sections,
 )
@@ -38,6 +39,15 @@ from cosserat_casadi.rod.properties import RodProperties
 
 SECTIONS = DENSE
 """Abscissae of the sections whose ways are checked."""
+
+OF_RODS = DENSE[::4]
+"""Abscissae of rods that are looked at on the way past other rods."""
+
+WAYS = 17
+"""Shares of their way at which the places of two rods are compared."""
+
+HALVINGS = 30
+"""Times that the part of a way is halved in which lines may cut each other."""
 
 DEEP = 1e-3
 """Depth on the way, relative to the length, above the depth of the chord of a rod that slides along an obstacle."""
@@ -127,12 +137,64 @@ def passes_through(before: Solution, after: Solution, deepest: float = DEEP) -> 
         end = seen_sections(after, rod, obstacle, SECTIONS)
         if is_inside_between(obstacle, after.model.discrete.rods[rod].properties, start, end, deepest):
             return True
+    for rods in rod_pairs(after.model.scene):
+        ways = [[solution.pose(OF_RODS, rod).position for solution in (before, after)] for rod in rods]
+        if lines_cross_between(*ways):
+            return True
     for body, obstacle in body_pairs(after.model.scene):
         length = after.model.discrete.body_frame(body.name).length
         way = (before.body(body.name).position, after.body(body.name).position)
         if ball_is_inside_between(obstacle, inner_radius(body), length, *way, deepest):
             return True
     return False
+
+
+def lines_cross_between(first: Sequence[FloatArray], second: Sequence[FloatArray]) -> bool:
+    """Whether two lines cut each other on the straight way of their points from one shape to another.
+
+    Four points lie in a plane where the volume that they span vanishes. Two pieces of the lines cut each other where
+    that is so and either ends on both sides of the other.
+
+    Args:
+        first: positions of the points of a line at both ends of the way, shape (k, 3) each, m.
+        second: positions of those of the other line.
+    """
+    starts, ends = zip(first, second, strict=True)
+    reach = max(float(np.linalg.norm(np.diff(line, axis=0), axis=1).max()) for line in (*starts, *ends))
+    way = sum(float(np.linalg.norm(end - start, axis=1).max()) for start, end in (first, second))
+    apart = np.linalg.norm(starts[0][:-1, None] - starts[1][None, :-1], axis=2)
+    pieces = np.nonzero(apart <= 2 * reach + way)
+
+    def corners(share: FloatArray) -> list[FloatArray]:
+        """Ends of the pieces of both lines at shares of the way, shape (…, 3) each."""
+        return [
+            line[0][number + k] + share[..., None] * (line[1][number + k] - line[0][number + k])
+            for line, number in zip((first, second), pieces, strict=True)
+            for k in (0, 1)
+        ]
+
+    def volume(share: FloatArray) -> FloatArray:
+        a, b, c, d = corners(share)
+        return np.asarray(np.einsum("...i,...i->...", np.cross(b - a, d - c), c - a))
+
+    looks = np.linspace(0.0, 1.0, WAYS)
+    volumes = np.array([volume(np.full(len(pieces[0]), share)) for share in looks])
+    steps, changed = np.nonzero(np.diff(np.sign(volumes), axis=0))
+    pieces = tuple(number[changed] for number in pieces)
+    low, high = looks[steps], looks[steps + 1]
+    sign = np.sign(volumes[steps, changed])
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        before = np.sign(volume(middle)) == sign
+        low, high = np.where(before, middle, low), np.where(before, high, middle)
+    a, b, c, d = corners(low)
+    across = np.cross(b - a, d - c)
+    square = np.einsum("...i,...i->...", across, across)
+    cut = np.ones(len(square), dtype=bool)
+    for along in (d - c, b - a):
+        share = np.einsum("...i,...i->...", np.cross(c - a, along), across)
+        cut &= (share >= 0.0) & (share <= square)
+    return bool(np.any(cut & (square > 0.0)))
 
 
 def admitted_depth(obstacle: scenes.ObstacleRecord, length: Scalar, deepest: Scalar, radius: Scalar) -> Scalar:

@@ -38,10 +38,11 @@ from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs
 from cosserat_casadi.equilibrium.contact.shape_projection import projected
 from cosserat_casadi.equilibrium.load_path import column
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.inputs import InputLayout
+from cosserat_casadi.model.obstacle_checks import exact_rods
 from cosserat_casadi.numerics.newton import Equations, NewtonSettings, newton
 from cosserat_casadi.numerics.outcome import Outcome
 
@@ -342,6 +343,7 @@ def relaxed_contact(
     if not scene.touches_exactly:
         problem = "none is touched exactly: there is no pair to relax"
         raise SceneError(Problem("obstacles", problem, "take the model itself"))
+    refuse(exact_rods(scene, "relaxed contact"))
     if sections < 1:
         raise SceneError(Problem("sections", f"must be 1 or more, got {sections}"))
     of_rods = list(pairs(scene))
