@@ -674,12 +674,14 @@ class _Writing:
         """How numbers that the code of columns reads lie in one array; None where they do not."""
         if not any(self.in_column[operand] for operand in operands):
             return self._run_of_numbers(operands)
+        if not all(self.in_column[operand] for operand in operands):
+            return None
         values = [self.listing.values[operand] for operand in operands]
         entries = [value.entry for value in values if isinstance(value, Read)]
         if len(entries) == len(values):
             return _run_of("turns", entries, LANES)
         places = self.passed.places
-        new = all(isinstance(value, Computed) for value in values) and all(self.in_column[one] for one in operands)
+        new = all(isinstance(value, Computed) for value in values)
         if new and places.keys().isdisjoint(operands) and len({*operands}) == len(operands):
             for operand in operands:
                 self.passed.place(operand)
