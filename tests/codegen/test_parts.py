@@ -87,6 +87,7 @@ def test_constants_are_rounded_beside_the_largest_number_that_a_call_takes_with_
 
     assert shared([leg(0, 1e-13, 3e-13), leg(1, 2e-13, 5e-13)], "k")[1] == [[3e-13], [5e-13]]
     assert shared([leg(0, 1e-9, 3.0), leg(1, 2e-9, 3.0)], "k")[1] == [[1e-9], [2e-9]]
+    assert shared([leg(0, 1e-9, 3.0)], "k")[1] == [[]]
 
 
 @pytest.mark.slow
