@@ -445,7 +445,12 @@ class _Writing:
 
         pointers, forms = arguments_at_places(calls, self._run_of_numbers, [copied] * len(calls))
         name = self._callee_name(calls[0].function, 1)
-        self.callees[name], _ = callee_at_places(Listing(calls[0].function), forms, SINGLE)
+        written, statements = callee_at_places(Listing(calls[0].function), forms, SINGLE)
+        # Arguments that lie in another way are read by another function.
+        while self.callees.get(name, written) != written:
+            name += "_further"
+        self.statements += 0 if name in self.callees else statements
+        self.callees[name] = written
         for k, given in enumerate(pointers):
             made = f"w + {batch.made + k * batch.results}"
             self.main.statements.append(Statement(f"MADE({self.name}_{name})({', '.join([*given, made])});", []))

@@ -13,7 +13,7 @@ from cosserat_casadi.compiling.called import called_functions
 from cosserat_casadi.compiling.listing import LANES, Listing, with_shorter_calls
 from cosserat_casadi.compiling.printed_kernels import ColumnForm
 from cosserat_casadi.compiling.program_in_c import program_in_c
-from cosserat_casadi.compiling.scalars_in_c import columns_in_fours
+from cosserat_casadi.compiling.scalars_in_c import columns_in_fours, scalars_in_c
 from cosserat_casadi.compiling.steps import program_of
 from cosserat_casadi.maths.calls import KEPT
 from tests.compiling.test_program_in_c import assert_same, in_c
@@ -90,3 +90,15 @@ def test_columns_call_functions_of_numbers_that_lie_apart(tmp_path: Path) -> Non
     found = computed_in_c(printed, given, 2 * LANES, tmp_path)
     expected = [form(given, np.zeros(2 * LANES), turns[:, j])[1].full().ravel() for j in range(LANES)]
     assert_allclose(found.reshape(2, LANES), np.transpose(expected), rtol=1e-15, atol=0)
+
+
+def test_calls_of_one_function_read_numbers_that_lie_in_several_ways(tmp_path: Path) -> None:
+    """Results of four calls lie four apart, results of one call beside each other."""
+    x, u = ca.SX.sym("x", 4), ca.SX.sym("u", 2)
+    of_four = ca.Function("of_four", [u], [ca.vertcat(u[0] * u[1], u[0] - u[1])], KEPT)
+    of_one = ca.Function("of_one", [u], [ca.vertcat(u[0] / u[1], u[0] + 3 * u[1])], KEPT)
+    first = [of_four(ca.vertcat(x[k], x[0] + 1.0)) for k in range(4)]
+    second = of_one(first[2])
+    function = ca.Function("several", [x], [ca.vertcat(*first, second, of_one(second))])
+    found = computed_in_c(scalars_in_c(function, function), np.array([0.3, 0.7, 0.4, 0.9]), 12, tmp_path)
+    assert_allclose(found, function([0.3, 0.7, 0.4, 0.9]).full()[:, 0], rtol=1e-15, atol=0)
