@@ -11,33 +11,21 @@ from cosserat_casadi.compiling.printed_kernels import Callee, PlacedCallee
 from cosserat_casadi.compiling.statements import FOURS, Arithmetic, Block, Statement, computations, number_in_c
 
 Form = tuple[bool, tuple[int, ...]]
-"""Whether an argument differs from column to column, and the places of its entries: what one function can read."""
+"""Whether an argument differs from column to column, and places behind its first number: what one function reads."""
 
 
 @dataclass(frozen=True)
 class Run:
-    """How an argument of a call lies.
-
-    Attributes:
-        pointer: to its first number in C.
-        in_column: whether it differs from column to column.
-        places: of its numbers behind the first.
-    """
+    """How an argument of a call lies: a pointer to its first number in C, and the form that calls share."""
 
     pointer: str
-    in_column: bool
-    places: tuple[int, ...]
-
-    @property
-    def form(self) -> Form:
-        """Key that runs share which one function can read."""
-        return self.in_column, self.places
+    form: Form
 
 
 def run_of(array: str, places: Sequence[int], lanes: int) -> Run:
     """How numbers at these places lie, so many lanes of each beside each other."""
     behind = tuple(lanes * (place - places[0]) for place in places)
-    return Run(f"{array} + {lanes * places[0]}", array != "w", behind)
+    return Run(f"{array} + {lanes * places[0]}", (array != "w", behind))
 
 
 def arguments_at_places(

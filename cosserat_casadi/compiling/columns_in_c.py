@@ -7,15 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 from cosserat_casadi.compiling.callees_in_c import Run, arguments_at_places, body, callee_at_places, run_of
-from cosserat_casadi.compiling.listing import (
-    LANES,
-    Called,
-    Computed,
-    Constant,
-    Listing,
-    Read,
-    UnknownOperationError,
-)
+from cosserat_casadi.compiling.listing import LANES, Called, Computed, Constant, Listing, Read, UnknownOperationError
 from cosserat_casadi.compiling.printed_kernels import (
     CALL_OF_COLUMNS,
     COLUMNS,
@@ -143,12 +135,11 @@ class ColumnsInC:
         entries = [value.entry for value in values if isinstance(value, Read)]
         if len(entries) == len(values):
             return run_of("turns", entries, LANES)
-        places = self.places
         new = all(isinstance(value, Computed) for value in values)
-        if new and places.keys().isdisjoint(operands) and len({*operands}) == len(operands):
+        if new and self.places.keys().isdisjoint(operands) and len({*operands}) == len(operands):
             for operand in operands:
                 self.places[operand] = self._more(1)
-        known = [places[operand] for operand in operands if operand in places]
+        known = [self.places[operand] for operand in operands if operand in self.places]
         return run_of("passed", known, LANES) if len(known) == len(operands) else None
 
     def _passed_copy(self, statements: list[Statement], operands: Sequence[int]) -> Run:

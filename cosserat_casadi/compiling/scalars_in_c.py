@@ -17,24 +17,9 @@ import numpy as np
 
 from cosserat_casadi.compiling.callees_in_c import Run, arguments_at_places, body, callee, callee_at_places, run_of
 from cosserat_casadi.compiling.columns_in_c import ColumnsInC
-from cosserat_casadi.compiling.listing import (
-    LANES,
-    Called,
-    Computed,
-    Constant,
-    Listing,
-    Read,
-    UnknownOperationError,
-)
+from cosserat_casadi.compiling.listing import LANES, Called, Computed, Constant, Listing, Read, UnknownOperationError
 from cosserat_casadi.compiling.place_tables import ConstantTables
-from cosserat_casadi.compiling.printed_kernels import (
-    Callee,
-    ColumnForm,
-    Kernel,
-    PlacedCallee,
-    PrintedKernel,
-    in_groups,
-)
+from cosserat_casadi.compiling.printed_kernels import Callee, ColumnForm, Kernel, PlacedCallee, PrintedKernel, in_groups
 from cosserat_casadi.compiling.statements import (
     ATOM,
     FOURS,
@@ -460,7 +445,7 @@ class _Writing:
         values = [self.listing.values[operand] for operand in operands]
         constants = [value.value for value in values if isinstance(value, Constant)]
         if len(constants) == len(values):
-            return Run(self.tables.of_numbers(constants), False, tuple(range(len(values))))
+            return Run(self.tables.of_numbers(constants), (False, tuple(range(len(values)))))
         places = [self.place.get(operand) for operand in operands]
         known = [place for place in places if place is not None]
         return run_of("w", known, 1) if len(known) == len(places) else None
@@ -549,14 +534,12 @@ class _Writing:
         return f"{self.callee_names[hash(function)]}{'s' if width == LANES else ''}"
 
     def _write_callees(self) -> None:
-        wanted = {}
         for batch in self.batch_of.values():
-            if self._kernel(batch.calls) is not None or self._reads_places(batch):
-                continue
             function = self.listing.calls[batch.calls[0]].function
-            wanted[self._callee_name(function, batch.width)] = (function, batch.width)
-        for name, (function, width) in wanted.items():
-            arithmetic = FOURS if width == LANES else self.arithmetic
+            name = self._callee_name(function, batch.width)
+            if name in self.callees or self._kernel(batch.calls) is not None or self._reads_places(batch):
+                continue
+            arithmetic = FOURS if batch.width == LANES else self.arithmetic
             self.callees[name], statements = callee(Listing(function), arithmetic)
             self.statements += statements
 
