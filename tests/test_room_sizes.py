@@ -35,7 +35,7 @@ LINES = {
     "paths": 2_735,
     "plots": 3_915,
     "results": 2_070,
-    "rod": 6_125,
+    "rod": 6_127,
     "scene": 9_750,
     "sweeps": 3_710,
     "tubes": 3_260,

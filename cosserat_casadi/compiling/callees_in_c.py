@@ -15,21 +15,23 @@ Form = tuple[bool, tuple[int, ...]]
 
 
 @dataclass(frozen=True)
-class Run:
+class OperandRun:
     """How an argument of a call lies: a pointer to its first number in C, and the form that calls share."""
 
     pointer: str
     form: Form
 
 
-def run_of(array: str, places: Sequence[int], lanes: int) -> Run:
+def run_of(array: str, places: Sequence[int], lanes: int) -> OperandRun:
     """How numbers at these places lie, so many lanes of each beside each other."""
     behind = tuple(lanes * (place - places[0]) for place in places)
-    return Run(f"{array} + {lanes * places[0]}", (array != "w", behind))
+    return OperandRun(f"{array} + {lanes * places[0]}", (array != "w", behind))
 
 
 def arguments_at_places(
-    calls: Sequence[Call], run: Callable[[Sequence[int]], Run | None], copied: Sequence[Callable[..., Run]]
+    calls: Sequence[Call],
+    run: Callable[[Sequence[int]], OperandRun | None],
+    copied: Sequence[Callable[..., OperandRun]],
 ) -> tuple[list[list[str]], list[Form]]:
     """Pointers to the arguments of calls of one function, and how each of these arguments lies.
 

@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
-from cosserat_casadi.compiling.callees_in_c import Run, arguments_at_places, body, callee_at_places, run_of
+from cosserat_casadi.compiling.callees_in_c import OperandRun, arguments_at_places, body, callee_at_places, run_of
 from cosserat_casadi.compiling.listing import LANES, Called, Computed, Constant, Listing, Read, UnknownOperationError
 from cosserat_casadi.compiling.printed_kernels import (
     CALL_OF_COLUMNS,
@@ -35,7 +35,7 @@ class ColumnsInC:
         name: str,
         in_column: Sequence[bool],
         numbers: Mapping[int, int],
-        run_of_numbers: Callable[[Sequence[int]], Run | None],
+        run_of_numbers: Callable[[Sequence[int]], OperandRun | None],
     ) -> None:
         """Nothing is written yet.
 
@@ -125,7 +125,7 @@ class ColumnsInC:
                 statements[number].append(Statement(call, []))
         return statements
 
-    def _run_in_columns(self, operands: Sequence[int]) -> Run | None:
+    def _run_in_columns(self, operands: Sequence[int]) -> OperandRun | None:
         """How numbers that the code of columns reads lie in one array; None where they do not."""
         if not any(self.in_column[operand] for operand in operands):
             return self.run_of_numbers(operands)
@@ -142,7 +142,7 @@ class ColumnsInC:
         known = [self.places[operand] for operand in operands if operand in self.places]
         return run_of("passed", known, LANES) if len(known) == len(operands) else None
 
-    def _passed_copy(self, statements: list[Statement], operands: Sequence[int]) -> Run:
+    def _passed_copy(self, statements: list[Statement], operands: Sequence[int]) -> OperandRun:
         """A copy of numbers, as the statements are extended by: one behind the other."""
         first = self._more(len(operands))
         for place, operand in enumerate(operands, first):

@@ -15,7 +15,14 @@ from functools import cached_property, partial
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.compiling.callees_in_c import Run, arguments_at_places, body, callee, callee_at_places, run_of
+from cosserat_casadi.compiling.callees_in_c import (
+    OperandRun,
+    arguments_at_places,
+    body,
+    callee,
+    callee_at_places,
+    run_of,
+)
 from cosserat_casadi.compiling.columns_in_c import ColumnsInC
 from cosserat_casadi.compiling.listing import LANES, Called, Computed, Constant, Listing, Read, UnknownOperationError
 from cosserat_casadi.compiling.place_tables import ConstantTables
@@ -422,7 +429,7 @@ class _Writing:
         """Append calls, one after the other, that read their operands where they lie."""
         calls = [self.listing.calls[number] for number in batch.calls]
 
-        def copied(operands: Sequence[int]) -> Run:
+        def copied(operands: Sequence[int]) -> OperandRun:
             first = self._room(len(operands))
             for place, operand in enumerate(operands, first):
                 self.main.statements.append(Statement(f"w[{place}] = {{0}};", [operand]))
@@ -440,12 +447,12 @@ class _Writing:
             made = f"w + {batch.made + k * batch.results}"
             self.main.statements.append(Statement(f"MADE({self.name}_{name})({', '.join([*given, made])});", []))
 
-    def _run_of_numbers(self, operands: Sequence[int]) -> Run | None:
+    def _run_of_numbers(self, operands: Sequence[int]) -> OperandRun | None:
         """How numbers lie in a table, or in the array that the kernel works in; None where some have no place there."""
         values = [self.listing.values[operand] for operand in operands]
         constants = [value.value for value in values if isinstance(value, Constant)]
         if len(constants) == len(values):
-            return Run(self.tables.of_numbers(constants), (False, tuple(range(len(values)))))
+            return OperandRun(self.tables.of_numbers(constants), (False, tuple(range(len(values)))))
         places = [self.place.get(operand) for operand in operands]
         known = [place for place in places if place is not None]
         return run_of("w", known, 1) if len(known) == len(places) else None

@@ -179,6 +179,8 @@ class Tangent:
             turned = self.kernels.turned.map(self.intervals)(self._turnings, self._in_intervals(self.turns))
             variation: Matrix = stack(turned)
             return variation
+        if self.igm.pulled.interval_moment is not None:
+            return self.interval_operators[0] @ self._turns
         return block_diagonal(self._turnings, self.kernels.turning.sparsity_out(0)) @ self._turns
 
     def _in_intervals(self, stacked: Matrix) -> Matrix:
