@@ -17,7 +17,7 @@ LINES = {
     "beside rooms": 605,
     "cli": 4_400,
     "codegen": 11_671,
-    "compiling": 5_035,
+    "compiling": 5_044,
     "constraints": 1_035,
     "control": 2_810,
     "environments": 335,
