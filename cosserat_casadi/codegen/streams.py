@@ -146,7 +146,8 @@ def shared(streams: Sequence[Stream], name: str) -> tuple[ca.Function, list[list
     numbered = [tuple(number_of[value] for value in values) for values in uses]
     varied: dict[tuple[int, ...], tuple[float, ...]] = {}
     varies = []
-    for numbers, values, scale in zip(numbered, uses, first.scales, strict=True):
+    scales = map(min, zip(*(stream.scales for stream in streams), strict=True))
+    for numbers, values, scale in zip(numbered, uses, scales, strict=True):
         varies.append(len(set(numbers)) > 1 and max(values) - min(values) > ROUNDING * scale)
         if varies[-1]:
             varied.setdefault(numbers, values)

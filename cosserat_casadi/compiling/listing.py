@@ -7,10 +7,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import accumulate, pairwise
+from typing import TypeVar
 
 import casadi as ca
 
 from cosserat_casadi.compiling.called import Known, called_functions
+from cosserat_casadi.maths.calls import KEPT
+
+_Entry = TypeVar("_Entry")
 
 LANES = 4
 """Number of columns, intervals or states that are computed together."""
@@ -94,10 +98,9 @@ class Call:
     results: list[int]
 
     @property
-    def arguments(self) -> list[list[int]]:
+    def arguments(self) -> list[Sequence[int]]:
         """The operands, argument after argument."""
-        sizes = (self.function.nnz_in(i) for i in range(self.function.n_in()))
-        return [self.operands[first:end] for first, end in pairwise(accumulate(sizes, initial=0))]
+        return by_argument(self.function, self.operands)
 
 
 @dataclass(frozen=True)
@@ -296,11 +299,9 @@ def with_shorter_calls(function: ca.Function) -> ca.Function:
     zero = {number for number, value in enumerate(listing.values) if value == Constant(0.0)}
     shorter = {}
     for known, operands in operands_of.items():
-        if known.function.is_a("SXFunction"):
-            places = [place for place, numbers in enumerate(zip(*operands, strict=True)) if zero.issuperset(numbers)]
-            short = _without(known, tuple(places))
-            if len(short.places) < len(operands[0]):
-                shorter[known.key] = short
+        short = _without(known, tuple(k for k, numbers in enumerate(zip(*operands, strict=True)) if zero >= {*numbers}))
+        if len(short.places) < len(operands[0]):
+            shorter[known.key] = short
     if not shorter:
         return function
     symbols = function.sx_in()
@@ -312,33 +313,28 @@ def with_shorter_calls(function: ca.Function) -> ca.Function:
 def _without(known: Known, places: tuple[int, ...]) -> ShorterCall:
     """A function without operands that are zero: one function, so that the functions that call it share its calls."""
     function = known.function
-    symbols = function.sx_in()
-    entries = [entry for symbol in symbols for entry in symbol.nonzeros()]
+    entries = [entry for symbol in function.sx_in() for entry in symbol.nonzeros()]
     left = [ca.SX(0.0) if place in places else entry for place, entry in enumerate(entries)]
     # The function is kept as a call where it is called.
     inside = Listing(function)
-    known = inside.known_arguments(_shaped(function, left))
-    results = ca.cse(inside.results(inside.expressions(inside.wanted(), known)))
-    written = Listing(ca.Function("written", symbols, results))
-    starts = list(accumulate((function.nnz_in(i) for i in range(function.n_in())), initial=0))
-    read = sorted(starts[value.argument] + value.entry for value in written.values if isinstance(value, Read))
-    vectors = []
-    for first, end in pairwise(starts):
-        own = [entries[place] for place in read if first <= place < end]
-        vectors += [ca.vertcat(*own)] if own else []
-    return ShorterCall(ca.Function(function.name(), vectors, results, {"never_inline": True}), read)
+    results = inside.results(inside.expressions(inside.wanted(), inside.known_arguments(_shaped(function, left))))
+    read = {entry.element_hash() for entry in ca.symvar(ca.veccat(*results))}
+    places_of_read = [place for place, entry in enumerate(entries) if entry.element_hash() in read]
+    vectors = [[entry for entry in own if entry.element_hash() in read] for own in by_argument(function, entries)]
+    arguments = [ca.vertcat(*own) for own in vectors if own]
+    return ShorterCall(ca.Function(function.name(), arguments, ca.cse(results), KEPT), places_of_read)
+
+
+def by_argument(function: ca.Function, entries: Sequence[_Entry]) -> list[Sequence[_Entry]]:
+    """All entries of the arguments of a function, argument after argument."""
+    sizes = (function.nnz_in(i) for i in range(function.n_in()))
+    return [entries[first:end] for first, end in pairwise(accumulate(sizes, initial=0))]
 
 
 def _shaped(function: ca.Function, entries: Sequence[ca.SX]) -> list[ca.SX]:
-    """Arguments of a function from all their stored entries."""
-    shaped = []
-    start = 0
-    for i in range(function.n_in()):
-        pattern = function.sparsity_in(i)
-        end = start + pattern.nnz()
-        shaped.append(ca.SX(pattern, ca.vertcat(*entries[start:end])))
-        start = end
-    return shaped
+    """Arguments of a function from all their entries."""
+    own = by_argument(function, entries)
+    return [ca.SX(function.sparsity_in(i), ca.vertcat(*one)) for i, one in enumerate(own)]
 
 
 def _call_of_entries(function: ca.Function, entries: Sequence[ca.SX]) -> list[ca.SX]:

@@ -18,12 +18,13 @@ from functools import partial
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.compiling.callees_in_c import callee
 from cosserat_casadi.compiling.listing import FEWEST, LANES, Constant, Listing, Read, UnknownOperationError
 from cosserat_casadi.compiling.numbered import SMALL, Numbers, Program, Step, Value
 from cosserat_casadi.compiling.place_tables import ConstantTables
 from cosserat_casadi.compiling.printed_kernels import Callee, PrintedKernel
 from cosserat_casadi.compiling.products import Product, column_groups
-from cosserat_casadi.compiling.scalars_in_c import callee, scalars_in_c
+from cosserat_casadi.compiling.scalars_in_c import scalars_in_c
 from cosserat_casadi.compiling.statements import (
     FOURS,
     LONGEST_OF_NUMBERS,

@@ -8,47 +8,34 @@ equals CasADi's to the last digit.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.compiling.listing import (
-    LANES,
-    Call,
-    Called,
-    Computed,
-    Constant,
-    Listing,
-    Read,
-    UnknownOperationError,
+from cosserat_casadi.compiling.callees_in_c import (
+    OperandRun,
+    arguments_at_places,
+    body,
+    callee,
+    callee_at_places,
+    run_of,
 )
+from cosserat_casadi.compiling.columns_in_c import ColumnsInC
+from cosserat_casadi.compiling.listing import LANES, Called, Computed, Constant, Listing, Read, UnknownOperationError
 from cosserat_casadi.compiling.place_tables import ConstantTables
-from cosserat_casadi.compiling.printed_kernels import (
-    CALL_OF_COLUMNS,
-    COLUMNS,
-    PART_OF_COLUMNS,
-    Callee,
-    ColumnForm,
-    Kernel,
-    PlacedCallee,
-    PrintedKernel,
-    in_groups,
-)
+from cosserat_casadi.compiling.printed_kernels import Callee, ColumnForm, Kernel, PlacedCallee, PrintedKernel, in_groups
 from cosserat_casadi.compiling.statements import (
     ATOM,
     FOURS,
-    LONGEST,
     LONGEST_OF_NUMBERS,
     SINGLE,
     Arithmetic,
     Block,
     Statement,
-    computations,
     in_parts,
-    number_in_c,
 )
 
 FEWEST_GATHERED = 64
@@ -211,8 +198,6 @@ class _Writing:
         self.given_to_columns = self._given_to_columns()
         for value in self.given_to_columns:
             self.place.setdefault(value, self._room(1))
-        self.passed = _Passed()
-        self.turns = ""
         self.columns = 0 if form is None else self._room(form.rows * form.stride)
         self.main = Block("casadi_real", "a", [])
         self.done: set[int | tuple[int, ...]] = set()
@@ -234,19 +219,16 @@ class _Writing:
         for value in self.given_to_columns:
             self._compute(value)
         if self.form is not None:
-            if self.form.turns_behind is None:
-                self.turns = self.tables.of_numbers(in_groups(self.form.turns).tolist())
             self._write_columns(self.form)
         if self.is_shared:
             self._keep_results()
         else:
             self._write_results()
         self._write_main()
-        body = "\n".join(self.functions)
         return PrintedKernel(
             self.signature,
             self.tables.by_name,
-            body,
+            "\n".join(self.functions),
             self.callees,
             self.reals,
             self.statements,
@@ -259,21 +241,17 @@ class _Writing:
         """Write the function itself, as a sequence of functions if it is long."""
         given = "const casadi_real **arg, casadi_real **res, casadi_real *w"
         # What one of them passes on to others stands behind all else.
-        first = self.reals
         parts, passed = in_parts(
-            self.main.statements, LONGEST_OF_NUMBERS, lambda place: f"w[{first + place}] = {{0}};", self.place
+            self.main.statements, LONGEST_OF_NUMBERS, lambda place: f"w[{place}] = {{0}};", self.place, self.reals
         )
         self._room(passed)
         lines = []
         for k, part in enumerate(parts):
-            elsewhere = {value: first + place for value, place in part.passed.items()}
-            made = {statement.made for statement in part.statements}
-            elsewhere |= {value: place for value, place in self.place.items() if value not in made}
             block = Block(self.main.type, self.main.letter, part.statements)
-            lines = block.lines(partial(self._text_in_part, elsewhere))
+            lines = block.lines(partial(self._text_in_part, part.passed))
             self.statements += len(part.statements)
             if len(parts) > 1:
-                self.functions.append(f"static void MADE({self.name}_part_{k})({given}){_body(lines)}")
+                self.functions.append(f"static void MADE({self.name}_part_{k})({given}){body(lines)}")
         if len(parts) > 1:
             lines = [f"  MADE({self.name}_part_{k})(arg, res, w);" for k in range(len(parts))]
         head = f"static int MADE({self.name})({given}) {{"
@@ -451,51 +429,33 @@ class _Writing:
         """Append calls, one after the other, that read their operands where they lie."""
         calls = [self.listing.calls[number] for number in batch.calls]
 
-        def copied(operands: Sequence[int]) -> _Run:
+        def copied(operands: Sequence[int]) -> OperandRun:
             first = self._room(len(operands))
             for place, operand in enumerate(operands, first):
                 self.main.statements.append(Statement(f"w[{place}] = {{0}};", [operand]))
-            return _run_of("w", range(first, first + len(operands)), 1)
+            return run_of("w", range(first, first + len(operands)), 1)
 
-        pointers, forms = self._arguments_at_places(calls, self._run_of_numbers, [copied] * len(calls))
+        pointers, forms = arguments_at_places(calls, self._run_of_numbers, [copied] * len(calls))
         name = self._callee_name(calls[0].function, 1)
-        self.callees[name], _ = callee_at_places(Listing(calls[0].function), forms, SINGLE)
+        written, statements = callee_at_places(Listing(calls[0].function), forms, SINGLE)
+        # Arguments that lie in another way are read by another function.
+        while self.callees.get(name, written) != written:
+            name += "_further"
+        self.statements += 0 if name in self.callees else statements
+        self.callees[name] = written
         for k, given in enumerate(pointers):
             made = f"w + {batch.made + k * batch.results}"
             self.main.statements.append(Statement(f"MADE({self.name}_{name})({', '.join([*given, made])});", []))
 
-    def _arguments_at_places(
-        self, calls: Sequence[Call], run: Callable[[Sequence[int]], _Run | None], copied: Sequence[Callable[..., _Run]]
-    ) -> tuple[list[list[str]], list[tuple[bool, tuple[int, ...]]]]:
-        """Pointers to the arguments of calls of one function, and how each of these arguments lies.
-
-        Args:
-            calls: the calls.
-            run: how operands lie, None where they are not together.
-            copied: for each call the copy of operands, where an argument does not lie alike in all calls.
-        """
-        pointers: list[list[str]] = [[] for _ in calls]
-        forms = []
-        for operands in zip(*(call.arguments for call in calls), strict=True):
-            runs = [run(one) for one in operands]
-            forms_of_calls = {None if one is None else one.form for one in runs}
-            if None in forms_of_calls or len(forms_of_calls) > 1:
-                runs = [copy(one) for copy, one in zip(copied, operands, strict=True)]
-            found = [one for one in runs if one is not None]
-            forms.append(found[0].form)
-            for pointer, one in zip(pointers, found, strict=True):
-                pointer.append(one.pointer)
-        return pointers, forms
-
-    def _run_of_numbers(self, operands: Sequence[int]) -> _Run | None:
+    def _run_of_numbers(self, operands: Sequence[int]) -> OperandRun | None:
         """How numbers lie in a table, or in the array that the kernel works in; None where some have no place there."""
         values = [self.listing.values[operand] for operand in operands]
         constants = [value.value for value in values if isinstance(value, Constant)]
         if len(constants) == len(values):
-            return _Run(self.tables.of_numbers(constants), False, tuple(range(len(values))))
+            return OperandRun(self.tables.of_numbers(constants), (False, tuple(range(len(values)))))
         places = [self.place.get(operand) for operand in operands]
         known = [place for place in places if place is not None]
-        return _run_of("w", known, 1) if len(known) == len(places) else None
+        return run_of("w", known, 1) if len(known) == len(places) else None
 
     def _write_results(self) -> None:
         """Append the entries of all results; the pointer of one of several results may be null."""
@@ -581,275 +541,25 @@ class _Writing:
         return f"{self.callee_names[hash(function)]}{'s' if width == LANES else ''}"
 
     def _write_callees(self) -> None:
-        wanted = {}
         for batch in self.batch_of.values():
-            if self._kernel(batch.calls) is not None or self._reads_places(batch):
-                continue
             function = self.listing.calls[batch.calls[0]].function
-            wanted[self._callee_name(function, batch.width)] = (function, batch.width)
-        for name, (function, width) in wanted.items():
-            arithmetic = FOURS if width == LANES else self.arithmetic
+            name = self._callee_name(function, batch.width)
+            if name in self.callees or self._kernel(batch.calls) is not None or self._reads_places(batch):
+                continue
+            arithmetic = FOURS if batch.width == LANES else self.arithmetic
             self.callees[name], statements = callee(Listing(function), arithmetic)
             self.statements += statements
 
-    # Columns
-
     def _write_columns(self, form: ColumnForm) -> None:
-        """Write the code for four columns, in parts that pass values on, and append its calls."""
-        statements = self._statements_of_columns(form)
-        # Behind the values that calls take and give.
-        first = self.passed.count
-        parts, passed = in_parts(statements, LONGEST, lambda place: _passed_on(first + place), self.passed.places)
-        room = self._room(LANES * (first + passed))
+        """Write what computes four columns, and append its call."""
+        turns = f"arg[{form.columns_argument - 1}] + {form.turns_behind}"
+        if form.turns_behind is None:
+            turns = self.tables.of_numbers(in_groups(form.turns).tolist())
+        columns = ColumnsInC(self.listing, form, self.name, self.in_column, self.place, self._run_of_numbers)
         name = f"{self.name}_columns"
-        calls = []
-        functions = []
-        for k, part in enumerate(parts):
-            block = Block("FOUR", "b", part.statements)
-            made = {statement.made for statement in part.statements}
-            elsewhere = {value: first + place for value, place in part.passed.items()}
-            elsewhere |= {value: place for value, place in self.passed.places.items() if value not in made}
-            body = _body(block.lines(partial(self._text_in_columns, elsewhere)))
-            functions.append(PART_OF_COLUMNS.format(name=name, part=k, body=body))
-            calls.append(CALL_OF_COLUMNS.format(name=name, part=k))
-            self.statements += len(block.statements)
-        listed = "\n".join(calls)
-        functions.append(COLUMNS.format(name=name, turns=LANES * len(form.turns), calls=listed))
-        self.column_functions[name] = "\n".join(functions)
-        turns = self.turns
-        if form.turns_behind is not None:
-            turns = f"arg[{form.columns_argument - 1}] + {form.turns_behind}"
+        self.column_functions[name] = columns.text(name)
+        self.callees |= columns.callees
+        self.statements += columns.statements
+        room = self._room(LANES * columns.passed)
         given = f"w, {turns}, w + {self.columns}, w + {room}, {form.stride // LANES}"
         self.main.statements.append(Statement(f"MADE({name})({given});", []))
-
-    def _statements_of_columns(self, form: ColumnForm) -> list[Statement]:
-        statements = []
-        called = self._calls_in_columns()
-        for number, value in enumerate(self.listing.values):
-            if not self.in_column[number] or isinstance(value, Read):
-                continue
-            if isinstance(value, Computed):
-                statements.append(FOURS.operation(value.operation, value.operands, number))
-                if number in self.passed.places:
-                    statements.append(Statement(_passed_on(self.passed.places[number]), [number]))
-            elif isinstance(value, Called) and value.result == 0:
-                statements += called[value.call]
-        entries = self.listing.outputs[-1]
-        for row in range(form.rows):
-            place = row * form.stride
-            made = entries.get(row)
-            if made is None or self.listing.values[made] == Constant(0.0):
-                statements.append(Statement(f"FILL(columns + {place}, 0);", []))
-            elif self.in_column[made]:
-                statements.append(Statement(f"STORE(columns + {place}, {{0}});", [made]))
-            else:
-                raise UnknownOperationError("a row that all columns share")
-        return statements
-
-    def _calls_in_columns(self) -> dict[int, list[Statement]]:
-        """Statements of each call that columns make, by its number."""
-        listing = self.listing
-        of_columns = [number for number, call in enumerate(listing.calls) if self.in_column[call.results[0]]]
-        for number in of_columns:
-            for result in listing.calls[number].results:
-                self.passed.place(result)
-        statements: dict[int, list[Statement]] = {number: [] for number in of_columns}
-        by_function: dict[int, list[int]] = defaultdict(list)
-        for number in of_columns:
-            by_function[hash(listing.calls[number].function)].append(number)
-        for key, numbers in by_function.items():
-            calls = [listing.calls[number] for number in numbers]
-            copied = [partial(self._passed_copy, statements[number]) for number in numbers]
-            pointers, forms = self._arguments_at_places(calls, self._run_in_columns, copied)
-            name = f"{self.callee_names[key]}_of_column"
-            self.callees[name], count = callee_at_places(Listing(calls[0].function), forms, FOURS)
-            self.statements += count
-            for number, given in zip(numbers, pointers, strict=True):
-                made = f"passed + {LANES * self.passed.places[listing.calls[number].results[0]]}"
-                call = f"MADE({self.name}_{name})({', '.join([*given, made])});"
-                statements[number].append(Statement(call, []))
-        return statements
-
-    def _run_in_columns(self, operands: Sequence[int]) -> _Run | None:
-        """How numbers that the code of columns reads lie in one array; None where they do not."""
-        if not any(self.in_column[operand] for operand in operands):
-            return self._run_of_numbers(operands)
-        values = [self.listing.values[operand] for operand in operands]
-        entries = [value.entry for value in values if isinstance(value, Read)]
-        if len(entries) == len(values):
-            return _run_of("turns", entries, LANES)
-        places = self.passed.places
-        new = all(isinstance(value, Computed) for value in values) and all(self.in_column[one] for one in operands)
-        if new and places.keys().isdisjoint(operands) and len({*operands}) == len(operands):
-            for operand in operands:
-                self.passed.place(operand)
-        known = [places[operand] for operand in operands if operand in places]
-        return _run_of("passed", known, LANES) if len(known) == len(operands) else None
-
-    def _passed_copy(self, statements: list[Statement], operands: Sequence[int]) -> _Run:
-        """A copy of numbers, as the statements are extended by: one behind the other."""
-        first = self.passed.more(len(operands))
-        for place, operand in enumerate(operands, first):
-            store = "STORE" if self.in_column[operand] else "FILL"
-            statements.append(Statement(f"{store}(passed + {LANES * place}, {{0}});", [operand]))
-        return _run_of("passed", range(first, first + len(operands)), LANES)
-
-    def _text_in_columns(self, elsewhere: dict[int, int], number: int) -> str | None:
-        """Text of a value that is not in a variable of the code for columns."""
-        value = self.listing.values[number]
-        if number in elsewhere:
-            return f"PASSED({LANES * elsewhere[number]})"
-        if isinstance(value, Constant):
-            return FOURS.number(value.value)
-        if not self.in_column[number]:
-            return f"w[{self.place[number]}]"
-        if isinstance(value, Read):
-            return f"TURN({LANES * value.entry})"
-        return None
-
-
-@dataclass(frozen=True)
-class _Run:
-    """How an argument of a call lies.
-
-    Attributes:
-        pointer: to its first number in C.
-        in_column: whether it differs from column to column.
-        places: of its numbers behind the first.
-    """
-
-    pointer: str
-    in_column: bool
-    places: tuple[int, ...]
-
-    @property
-    def form(self) -> tuple[bool, tuple[int, ...]]:
-        """Key that runs share which one function can read."""
-        return self.in_column, self.places
-
-
-def _run_of(array: str, places: Sequence[int], lanes: int) -> _Run:
-    """How numbers at these places lie, so many lanes of each beside each other."""
-    behind = tuple(lanes * (place - places[0]) for place in places)
-    return _Run(f"{array} + {lanes * places[0]}", array != "w", behind)
-
-
-class _Passed:
-    """Fours that calls in columns take and give.
-
-    Attributes:
-        places: of values, by their number.
-        count: how many there are.
-    """
-
-    def __init__(self) -> None:
-        self.places: dict[int, int] = {}
-        self.count = 0
-
-    def more(self, count: int) -> int:
-        """Where so many new ones begin."""
-        self.count += count
-        return self.count - count
-
-    def place(self, value: int) -> int:
-        """The new place of a value."""
-        self.places[value] = self.more(1)
-        return self.places[value]
-
-
-def _passed_on(place: int) -> str:
-    """Text of the statement that passes four numbers on."""
-    return f"STORE(passed + {LANES * place}, {{0}});"
-
-
-def callee_at_places(
-    listing: Listing, forms: Sequence[tuple[bool, tuple[int, ...]]], arithmetic: Arithmetic
-) -> tuple[PlacedCallee, int]:
-    """A function that reads its arguments where they lie, and its number of statements.
-
-    Args:
-        listing: the values of the function.
-        forms: of each argument, whether it differs from column to column, and the places of its entries.
-        arithmetic: FOURS for four columns at once, or SINGLE.
-
-    Raises:
-        UnknownOperationError: there is an operation that has no form here.
-    """
-    if listing.calls:
-        raise UnknownOperationError(f"a call in {listing.function.name()}, which is called itself")
-    in_fours = arithmetic is FOURS
-    block = Block(*(("FOUR", "b") if in_fours else ("casadi_real", "a")), computations(listing, arithmetic))
-    results = _starts(listing.function.nnz_out(i) for i in range(listing.function.n_out()))
-    for start, entries in zip(results, listing.outputs, strict=True):
-        for entry, number in entries.items():
-            place = start + entry
-            store = f"STORE(made + {LANES * place}, {{0}});" if in_fours else f"made[{place}] = {{0}};"
-            block.statements.append(Statement(store, [number]))
-
-    def text(number: int) -> str | None:
-        value = listing.values[number]
-        if isinstance(value, Constant):
-            return arithmetic.number(value.value)
-        if isinstance(value, Read):
-            in_column, places = forms[value.argument]
-            place = places[value.entry]
-            return f"LOAD(p{value.argument} + {place})" if in_column else f"p{value.argument}[{place}]"
-        return None
-
-    return PlacedCallee(_body(block.lines(text)), len(forms), in_fours), len(block.statements)
-
-
-def callee(listing: Listing, arithmetic: Arithmetic) -> tuple[Callee, int]:
-    """Write a function that kernels call; also return its number of statements.
-
-    Args:
-        listing: the values of the function.
-        arithmetic: FOURS for four calls at once, or arithmetic of single numbers.
-
-    Raises:
-        UnknownOperationError: an operation is not supported, or the function calls another one.
-    """
-    function = listing.function
-    if listing.calls:
-        raise UnknownOperationError(f"a call in {function.name()}, which is called itself")
-    wide = arithmetic is FOURS
-    width = LANES if wide else 1
-    arguments = _starts(function.nnz_in(i) for i in range(function.n_in()))
-    results = _starts(function.nnz_out(i) for i in range(function.n_out()))
-    type_and_letter = ("FOUR", "b") if wide else ("casadi_real", "a")
-    block = Block(*type_and_letter, computations(listing, arithmetic))
-    for start, entries in zip(results, listing.outputs, strict=True):
-        for entry, number in entries.items():
-            place = width * (start + entry)
-            value = listing.values[number]
-            if wide and isinstance(value, Constant):
-                block.statements.append(Statement(f"FILL(made + {place}, {number_in_c(value.value)});", []))
-                continue
-            store = f"STORE(made + {place}, {{0}});" if wide else f"made[{place}] = {{0}};"
-            block.statements.append(Statement(store, [number]))
-
-    def text(number: int) -> str | None:
-        value = listing.values[number]
-        if isinstance(value, Constant):
-            return arithmetic.number(value.value)
-        if isinstance(value, Read):
-            place = width * (arguments[value.argument] + value.entry)
-            return f"GIVEN({place})" if wide else f"given[{place}]"
-        return None
-
-    return Callee(_body(block.lines(text)), width, function.nnz_in(), function.nnz_out()), len(block.statements)
-
-
-def _body(lines: Iterable[str]) -> str:
-    """Write the body of a function."""
-    return "\n".join([" {", *lines, "}\n"])
-
-
-def _starts(sizes: Iterable[int]) -> list[int]:
-    """Start indices of consecutive vectors."""
-    starts = []
-    total = 0
-    for size in sizes:
-        starts.append(total)
-        total += size
-    return starts

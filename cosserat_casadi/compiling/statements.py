@@ -245,6 +245,9 @@ def _length(statement: Statement, text_of: Callable[[int], str | None]) -> int:
     return len(statement.text.format(*[SHARED_NUMBER if "NUMBER" in text else text for text in texts]))
 
 
+NOTHING_STORED: Mapping[int, int] = {}
+
+
 @dataclass(frozen=True)
 class StatementPart:
     """Statements of one of several consecutive functions.
@@ -272,7 +275,11 @@ def computations(listing: Listing, arithmetic: Arithmetic) -> list[Statement]:
 
 
 def in_parts(
-    statements: Sequence[Statement], longest: int, store: Callable[[int], str], stored: Container[int] = ()
+    statements: Sequence[Statement],
+    longest: int,
+    store: Callable[[int], str],
+    stored: Mapping[int, int] = NOTHING_STORED,
+    first: int = 0,
 ) -> tuple[list[StatementPart], int]:
     """Split statements into parts, each a function.
 
@@ -280,7 +287,8 @@ def in_parts(
         statements: the statements.
         longest: most statements in a part.
         store: place of a value that is passed on ↦ text of the statement that stores it.
-        stored: values that later statements store, so that their places are known.
+        stored: places of values that a later statement than the value's own stores.
+        first: the first place of values that are passed on.
 
     Returns:
         the parts, with statements that store the values that other parts read, and the number of these values.
@@ -294,9 +302,9 @@ def in_parts(
         for statement in part:
             for operand in statement.operands:
                 if operand in before and operand not in stored:
-                    passed.setdefault(operand, len(passed))
+                    passed.setdefault(operand, first + len(passed))
         before |= own
-    return [_part(part, passed, store) for part in parts], len(passed)
+    return [_part(part, passed, store, stored) for part in parts], len(passed)
 
 
 def _ends_of_parts(statements: Sequence[Statement], longest: int, stored: Container[int]) -> list[int]:
@@ -325,7 +333,9 @@ def _passing(statements: Sequence[Statement], stored: Container[int]) -> list[in
     return list(accumulate(change))
 
 
-def _part(part: Sequence[Statement], passed: dict[int, int], store: Callable[[int], str]) -> StatementPart:
+def _part(
+    part: Sequence[Statement], passed: Mapping[int, int], store: Callable[[int], str], stored: Mapping[int, int]
+) -> StatementPart:
     statements = []
     computed = set()
     for statement in part:
@@ -334,7 +344,8 @@ def _part(part: Sequence[Statement], passed: dict[int, int], store: Callable[[in
             computed.add(statement.made)
         if statement.made is not None and statement.made in passed:
             statements.append(Statement(store(passed[statement.made]), [statement.made]))
-    return StatementPart(statements, {value: place for value, place in passed.items() if value not in computed})
+    places = {**passed, **stored}
+    return StatementPart(statements, {value: place for value, place in places.items() if value not in computed})
 
 
 def number_in_c(value: float) -> str:

@@ -14,7 +14,7 @@ from cosserat_casadi.codegen.kernel_files import kernel_sources
 from cosserat_casadi.codegen.kernels import kernels
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.parts import in_one, parted, sharing
-from cosserat_casadi.codegen.streams import Stream, same_but_for_rounding
+from cosserat_casadi.codegen.streams import Stream, same_but_for_rounding, shared
 from tests.scenes import rod, scene
 
 
@@ -73,6 +73,21 @@ def test_constants_that_differ_by_rounding_share_a_kernel_and_stay_in_its_code()
     for part, value in zip(split.parts, expected, strict=True):
         found = split.kernels[0](x[part.x], [], 0.4, part.constants)
         assert_allclose(float(found), value, rtol=1e-15, atol=0)
+
+
+def test_constants_are_rounded_beside_the_largest_number_that_a_call_takes_with_them() -> None:
+    """Entries of a matrix that are zero but for rounding stay in the code; by itself such a number is an argument."""
+    u, v = ca.SX.sym("u", 2), ca.SX.sym("v")
+    product = ca.Function("product", [u, v], [u[0] * v + u[1]], {"never_inline": True})
+
+    def leg(number: int, beside: float, alone: float) -> Stream:
+        x = ca.SX.sym("x", 5)
+        result = product(ca.vertcat(1000.0, beside), x[number]) + product(ca.vertcat(x[number], 1.0), alone)
+        return Stream(ca.Function("leg", [x], [result], ["x"], ["entries"]))
+
+    assert shared([leg(0, 1e-13, 3e-13), leg(1, 2e-13, 5e-13)], "k")[1] == [[3e-13], [5e-13]]
+    assert shared([leg(0, 1e-9, 3.0), leg(1, 2e-9, 3.0)], "k")[1] == [[1e-9], [2e-9]]
+    assert shared([leg(0, 1e-9, 3.0)], "k")[1] == [[]]
 
 
 @pytest.mark.slow

@@ -77,6 +77,10 @@ def test_turn_matrix_vs_taylor_matrices(admitted, breaks, nodes, transport):
     ]
     assert_allclose(interval_turns(basis, ca.DM(q)).full(), np.array(rows), rtol=0, atol=1e-15)
     derivative = matrix.unfolded.full()
+    field = np.random.default_rng(1).uniform(-1, 1, len(derivative))
+    pulled = basis.turn_axes.transposed_times(ca.DM(field)).full().ravel()
+    assert_allclose(pulled, (derivative.T @ field)[: pulled.size], rtol=0, atol=1e-14)
+    assert not np.any(derivative[:, pulled.size :])
     assert derivative.shape == (np.size(rows), basis.size)
     modes = [max(0, 4 - order) for order in range(basis.taylor_count) for c in basis.columns if c < 3]
     assert matrix.half.nnz() <= (0.5 if nodes % 2 == 0 else 0.55) * nodes * basis.grid.elements * sum(modes)
