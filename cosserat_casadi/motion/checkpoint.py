@@ -92,7 +92,7 @@ class Strand:
     resume: Resume
 
     def halved(self) -> Strand:
-        """The motion from where it has come to, with equal steps half as long; steps of a tolerance stay as they are."""
+        """The motion from where it has come to, with equal steps half as long; steps of a tolerance stay the same."""
         size = self.settings.size
         return self if size is None else replace(self, settings=replace(self.settings, size=size / 2.0))
 
