@@ -113,11 +113,16 @@ def go_on(
     start = resumed_start(model, checkpoint.strands[0].resume)
     simulator = Simulator(model, asked, start, "going on", tell, source, checkpoint, events)
     strands, before, apart = checkpoint.strands, np.inf, 0
+    whole: Motion | None = None
     for _ in range(MOST_HALVINGS):
         motion, excess = _along(simulator, strands, of_model=given is not None)
+        if motion.outcome is MotionOutcome.INTERRUPTED and whole is not None:
+            message = f"{motion.outcome.value} The motion is whole, but not as exact as was asked."
+            motion = replace(whole, outcome=motion.outcome, message=message)
         apart = apart + 1 if excess > max(before, FAR_APART) else 0
         if not excess > 1.0 or apart == MOST_APART:
             break
+        whole = motion if np.isfinite(excess) else whole
         before, strands = excess, tuple(strand.halved() for strand in strands)
     return motion if given is None else replace(motion, tolerance=None)
 

@@ -239,3 +239,13 @@ def test_the_motion_of_more_modes_keeps_its_steps_where_equal_steps_are_halved()
     assert finer.end is not None and slow.end is not None
     before, after = ([strand.settings for strand in motion.end.strands if strand.by_modes] for motion in (slow, finer))
     assert before == after and before[0].size is None
+
+    def stopped_in_shorter_steps(news: MotionProgress) -> None:
+        if news.stage == "going on" and news.step < 0.75 * later.statistics.largest_step:
+            raise KeyboardInterrupt
+
+    asked = scene_from_dict(pushed(0.3, later.error_estimate * (1.0 - 1e-6)))
+    stopped = simulate(asked, start=slow, compiled=False, progress=stopped_in_shorter_steps)
+    assert stopped.outcome is MotionOutcome.INTERRUPTED and "The motion is whole" in stopped.message
+    assert stopped.end is not None and stopped.end.time == 0.3
+    assert stopped.error_estimate == pytest.approx(later.error_estimate)
