@@ -92,9 +92,9 @@ class Strand:
     resume: Resume
 
     def halved(self) -> Strand:
-        """The motion from where it has come to, with equal steps half as long."""
-        assert self.settings.size is not None, "its steps are equal"
-        return replace(self, settings=replace(self.settings, size=self.settings.size / 2.0))
+        """The motion from where it has come to, with equal steps half as long; steps of a tolerance stay the same."""
+        size = self.settings.size
+        return self if size is None else replace(self, settings=replace(self.settings, size=size / 2.0))
 
 
 @dataclass(frozen=True)

@@ -109,16 +109,18 @@ def go_on(
     if not asked.duration > checkpoint.time:
         problem = f"{asked.duration:g} s is not beyond t = {checkpoint.time:g} s, where the motion goes on"
         raise SceneError(Problem("simulation.duration", problem, "times go on: give the end of the whole motion"))
-
     start = resumed_start(model, checkpoint.strands[0].resume)
     simulator = Simulator(model, asked, start, "going on", tell, source, checkpoint, events)
     strands, before, apart = checkpoint.strands, np.inf, 0
+    whole: Motion | None = None
     for _ in range(MOST_HALVINGS):
         motion, excess = _along(simulator, strands, of_model=given is not None)
+        if motion.outcome is MotionOutcome.INTERRUPTED and whole is not None and np.isfinite(before):
+            motion = replace(whole, outcome=motion.outcome, message=f"{motion.outcome.value} The motion is whole.")
         apart = apart + 1 if excess > max(before, FAR_APART) else 0
         if not excess > 1.0 or apart == MOST_APART:
             break
-        before, strands = excess, tuple(strand.halved() for strand in strands)
+        whole, before, strands = motion, excess, tuple(one.halved() for one in strands)
     return motion if given is None else replace(motion, tolerance=None)
 
 
@@ -196,8 +198,7 @@ def _later_factor(simulator: Simulator, strand: Strand, history: History, told: 
         return strand.factor
     if strand.settings.size is not None:
         return simulator.fall.factor(history, told) if simulator.rubs else strand.factor
-    tighter = float(np.max(strand.settings.tolerance / history.settings.tolerance))
-    return left_by(tighter, history, told)
+    return left_by(float(np.max(strand.settings.tolerance / history.settings.tolerance)), history, told)
 
 
 def _moving(subject: Scene | Model, simulation: Simulation | None) -> Scene:
@@ -218,9 +219,8 @@ def _model_of(scene: Scene, given: Model | None, strand: Strand, checkpoint: Che
     inputs = moving_inputs(model).at(at.time).value
     if can_be_centred(model):
         at = CentredCoordinates(model).to_model(at)
-    x = at.x[: model.size]
     for name, rod in model.discrete.rods.items():
-        position = np.asarray(model.tip[name](x, inputs)[0]).ravel()
+        position = np.asarray(model.tip[name](at.x[: model.size], inputs)[0]).ravel()
         if not np.abs(position - checkpoint.tips[name]).max() <= AGREEMENT * rod.properties.length:
             raise of_another_scene()
     return model

@@ -401,7 +401,7 @@ def _table_of(motion: InputMotion) -> _Table:
 
 
 def _cubic_breaks(knots: FloatArray, values: FloatArray) -> list[tuple[float, int]]:
-    """Breaks of a spline with the given values at knots: its ends alone, as accelerations between them are smooth."""
+    """Breaks of a spline at its knots: accelerations jump at its ends, their rates between; none of a constant."""
     if not np.any(np.ptp(values, axis=0)):
         return []
     inside = [(time, 3) for time in knots[1:-1].tolist()]

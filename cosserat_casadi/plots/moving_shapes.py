@@ -113,7 +113,7 @@ def moving_shapes(model: Model, times: FloatArray, x: FloatArray, inputs: FloatA
 
 
 def _followed(model: Model, rods: dict[str, FloatArray]) -> dict[str, FloatArray]:
-    """Drawn path of each rod, shape (T, 3), m: of its tip, or of its middle if the tip is held."""
+    """Path of each tip, shape (T, 3), m; of the middle if the tip is held; none for a tip that is jointed to a body."""
     followed = {}
     carrying = {joint.rod for joint in model.scene.joints if joint.at == 1.0}
     held = {support.rod for support in model.scene.supports}

@@ -218,3 +218,34 @@ def test_steps_of_given_size_keep_their_factor_after_blows() -> None:
     assert any(event.kind == "impact" for event in second.events)
     assert first.end is not None and second.end is not None
     assert second.end.strands[1].factor == first.end.strands[1].factor == HALVED
+
+
+def test_the_motion_of_more_modes_keeps_its_steps_where_equal_steps_are_halved() -> None:
+    """Steps of a tolerance tell the error of fixed modes of a motion by Gauss's method."""
+
+    def pushed(duration: float, tolerance: float) -> dict[str, Any]:
+        tables = swing(duration, step=None)
+        tables["motions"][0] |= {"times": [0.0, 0.2, 0.21], "values": [[0, 0, 0], [0, 0, 1e-3], [0, 0, 0.02]]}
+        tables["loads"] = tables["loads"][1:]
+        tables["simulation"] |= {"integrator": "gauss", "tolerance": tolerance}
+        return tables | {"accuracy": {"modes": 5, "nodes": 12}}
+
+    slow = moved(pushed(0.2, 1e-3))
+    later = moved(pushed(0.3, 1e-2), start=slow)
+    assert later.error_estimate is not None
+    # What the modes leave of this tolerance is a little less than what the steps are off by.
+    finer = moved(pushed(0.3, later.error_estimate * (1.0 - 1e-6)), start=slow)
+    assert finer.statistics.largest_step == later.statistics.largest_step / 2.0
+    assert finer.end is not None and slow.end is not None
+    before, after = ([strand.settings for strand in motion.end.strands if strand.by_modes] for motion in (slow, finer))
+    assert before == after and before[0].size is None
+
+    def stopped_in_shorter_steps(news: MotionProgress) -> None:
+        if news.stage == "going on" and news.step < 0.75 * later.statistics.largest_step:
+            raise KeyboardInterrupt
+
+    asked = scene_from_dict(pushed(0.3, later.error_estimate * (1.0 - 1e-6)))
+    stopped = simulate(asked, start=slow, compiled=False, progress=stopped_in_shorter_steps)
+    assert stopped.outcome is MotionOutcome.INTERRUPTED and "The motion is whole" in stopped.message
+    assert stopped.end is not None and stopped.end.time == 0.3
+    assert stopped.error_estimate == pytest.approx(later.error_estimate)
