@@ -347,6 +347,7 @@ def test_what_newton_leaves_of_a_gap_turns_nothing(tmp_path: Path) -> None:
     library = exported_contact(bent, tmp_path / "bent", force[None], 5, 12)
     found = library.loaded.solve(force)
     wanted = solve(library.model, force)
+    assert found.error_estimate is not None and wanted.error_estimate is not None
     np.testing.assert_allclose(found.error_estimate, wanted.error_estimate, rtol=1e-2)
 
 
