@@ -340,6 +340,18 @@ def test_errors_and_verdicts(which: str, force: float, kinds: list[str], request
 
 
 @pytest.mark.slow
+def test_what_newton_leaves_of_a_gap_turns_nothing(tmp_path: Path) -> None:
+    """C looks at the place of contact itself: its gap of -4e-12 is no angle at which the rod enters the bar."""
+    bent = read_scene("examples/rod_over_bar.toml")
+    force = np.array([-1.4789654541625923, -1.241352145084578, -2.257145248551024])
+    library = exported_contact(bent, tmp_path / "bent", force[None], 5, 12)
+    found = library.loaded.solve(force)
+    wanted = solve(library.model, force)
+    assert found.error_estimate is not None and wanted.error_estimate is not None
+    np.testing.assert_allclose(found.error_estimate, wanted.error_estimate, rtol=1e-2)
+
+
+@pytest.mark.slow
 def test_errors_in_contact_bound_the_true_ones(bar: ContactLibrary) -> None:
     fine = solve(build(over_bar(), discretise(over_bar(), 11, 22)), down(8.0))
     answer = bar.loaded.solve(down(8.0))

@@ -42,6 +42,13 @@ static real watched_distance(const arrangement *at, const real *z, const arrange
   return largest;
 }
 
+/* Whether what is inside an obstacle is the place of one of its contacts alone: as deep as Newton's method leaves the gap
+   there, whatever the slope of the gap from the section before. */
+static int is_place_of(const penetration *inside, const touch *contact) {
+  const real off = smaller(fabs(inside->start - contact->start), fabs(inside->end - contact->end));
+  return inside->start == inside->end && off <= TOLERANCE;
+}
+
 /* How far poses, places and forces may be off because contacts hold up to a tolerance alone; the nodes stand in the
    workspace. Depth and angle of what is inside an obstacle beside its lines, how far it reaches beyond points there, and
    what pulls. */
@@ -55,16 +62,18 @@ static real unmet(const arrangement *at, const real *z, workspace *work) {
     real first = 1, last = 0;
     int along = 0;
     int lines = 0;
+    int left = 0;
     for (int k = 0; k < at->touches; k++) {
       const touch own = touch_at(at, z, k);
       if (own.rod != found[i].rod || own.obstacle != found[i].obstacle) continue;
       first = smaller(first, own.start);
       last = larger(last, own.end);
       lines |= own.is_line;
+      left |= is_place_of(found + i, &own);
       along |= own.is_line && own.start < found[i].deepest && found[i].deepest < own.end;
     }
     if (along) continue;
-    off = larger(off, larger(found[i].depth, found[i].angle));
+    off = larger(off, larger(found[i].depth, left ? 0 : found[i].angle));
     if (first <= last && !lines) off = larger(off, larger(first - found[i].start, found[i].end - last));
   }
   return off;

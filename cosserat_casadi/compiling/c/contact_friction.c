@@ -367,7 +367,7 @@ static real at_stage(int stage, int row, real whole, real imaginary, real size) 
 static void answers_of_stages(workspace *work) {
   const int pressing = work->pressing;
   const int all = ROWS * work->touch_count;
-  const int order = STAGES * ROWS * pressing;
+  const int order = ROWS * pressing * STAGES;
   for (int j = 0; j < order; j++) {
     const int stage = j / (ROWS * pressing);
     const int column = ROWS * work->border_members[j / ROWS % pressing] + j % ROWS;

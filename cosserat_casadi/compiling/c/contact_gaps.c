@@ -263,7 +263,7 @@ static int gaps_along(const facing *own, const real *nodes, real *gaps, workspac
     const int local = i - e * LOOKS;
     const real *weights = own->looks + local * own->nodes;
     const real *node = nodes + 3 * e * own->nodes;
-    const real place = own->ends[e] + (own->ends[e + 1] - own->ends[e]) * (real)local / LOOKS;
+    const real place = own->ends[e] + (own->ends[e + 1] - own->ends[e]) * (real)local / (real)LOOKS;
     real x = 0, y = 0, z = 0; /* apart: a compiler leaves an array whose address is taken in memory */
     for (int k = 0; k < own->nodes; k++) {
       x += weights[k] * node[3 * k];
@@ -279,7 +279,7 @@ static int gaps_along(const facing *own, const real *nodes, real *gaps, workspac
 
 static real place_of_look(const facing *own, int i) {
   const int e = i / LOOKS < own->elements ? i / LOOKS : own->elements - 1;
-  return own->ends[e] + (own->ends[e + 1] - own->ends[e]) * (real)(i - e * LOOKS) / LOOKS;
+  return own->ends[e] + (own->ends[e + 1] - own->ends[e]) * (real)(i - e * LOOKS) / (real)LOOKS;
 }
 
 /* The least gap next to a section that is looked at first; that section where none is. */

@@ -624,7 +624,7 @@ static int looks_in(const step_start *start, const real *unknowns, workspace *wo
   for (int number = 0; number < FACINGS; number++) {
     const facing *own = FACING + number;
     const real longest = way_of_points(own, start->x, start->inputs, work->at.state, work->at.inputs, work);
-    if (!(longest < MOST_IN_TIME * own->stride)) return 0;
+    if (!(longest < (real)MOST_IN_TIME * own->stride)) return 0;
     while (looks * own->stride < longest) looks++;
   }
   return looks;

@@ -171,7 +171,7 @@ static void obey_law(real by_slide[2][2], real *rows) {
 /* How gaps and the law of both stages answer to forces and drags in these. Zero where they depend on each other. */
 static int border_stages(const stage_factors *factors, workspace *work) {
   const int count = work->part_pressing;
-  const int order = STAGES * ROWS * count;
+  const int order = ROWS * count * STAGES;
   for (int first = 0; first < order; first += FOUR) {
     real *columns = work->stage_solution;
     memset(columns, 0, FOUR * STAGED * sizeof *columns);
@@ -227,7 +227,7 @@ static int border_stages(const stage_factors *factors, workspace *work) {
 /* Columns whose gaps and slides change as they are to, from those of no change of the forces. */
 static void close_stage_columns(real *columns, workspace *work) {
   const int count = work->part_pressing;
-  const int order = STAGES * ROWS * count;
+  const int order = ROWS * count * STAGES;
   for (int lane = 0; lane < FOUR && count > 0; lane++) {
     real *own = columns + lane * STAGED;
     real *values = work->law_values;
