@@ -172,8 +172,8 @@ def _kernels(fold: tuple[int, ...], signs: tuple[float, ...], half: tuple[int, .
     folded_rows = ca.vertcat(parts, rows[middle.tolist()])
     product = entries @ modes
     sums, differences, own = ca.vertsplit(product, [0, count, 2 * count, entries.shape[0]])
-    both = ca.vertcat(sums - differences, differences - sums)
-    mirror = both[kept.tolist()] if count else both
+    halves = product[: 2 * count]
+    mirror = halves[kept.tolist()] - halves[swapped.tolist()] if count else halves
     order = np.argsort(np.concatenate([first, second, middle]))
     unfolded = ca.vertcat(sums + differences, mirror, own)[order.tolist()]
     # The numbers are constants of a rod.

@@ -36,7 +36,7 @@ int precurved_tube_k_richer_balance(const casadi_real** arg, casadi_real** res, 
 #define precurved_tube_k_richer_balance_SZ_ARG 4
 #define precurved_tube_k_richer_balance_SZ_RES 1
 #define precurved_tube_k_richer_balance_SZ_IW 0
-#define precurved_tube_k_richer_balance_SZ_W 1043
+#define precurved_tube_k_richer_balance_SZ_W 1026
 int precurved_tube_k_watched(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_watched_SZ_ARG 2
 #define precurved_tube_k_watched_SZ_RES 1

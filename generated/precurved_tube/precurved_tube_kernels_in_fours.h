@@ -543,38 +543,35 @@ static void MADE(precurved_tube_k_richer_balance_loop_2)(casadi_real *w) {
 static void MADE(precurved_tube_k_richer_balance_loop_3)(casadi_real *w) {
   FOR_FOURS(i, 15) {
     STORE(w + 150 + i, LOAD(w + 172 + i) + LOAD(w + 187 + i));
-    STORE(w + 271 + i, LOAD(w + 172 + i) - LOAD(w + 187 + i));
-    STORE(w + 286 + i, LOAD(w + 187 + i) - LOAD(w + 172 + i));
-    STORE(w + 301 + i, LOAD(w + 205 + i) + LOAD(w + 220 + i));
-    STORE(w + 316 + i, LOAD(w + 205 + i) - LOAD(w + 220 + i));
-    STORE(w + 331 + i, LOAD(w + 220 + i) - LOAD(w + 205 + i));
-    STORE(w + 346 + i, LOAD(w + 238 + i) + LOAD(w + 253 + i));
-    STORE(w + 361 + i, LOAD(w + 238 + i) - LOAD(w + 253 + i));
-    STORE(w + 376 + i, LOAD(w + 253 + i) - LOAD(w + 238 + i));
+    STORE(w + 271 + i, LOAD(w + 346 + i) - LOAD(w + 361 + i));
+    STORE(w + 286 + i, LOAD(w + 205 + i) + LOAD(w + 220 + i));
+    STORE(w + 301 + i, LOAD(w + 376 + i) - LOAD(w + 391 + i));
+    STORE(w + 316 + i, LOAD(w + 238 + i) + LOAD(w + 253 + i));
+    STORE(w + 331 + i, LOAD(w + 406 + i) - LOAD(w + 421 + i));
   }
 }
 
 static void MADE(precurved_tube_k_richer_balance_loop_4)(casadi_real *w) {
   FOR_FOURS(i, 62) {
-    STORE(w + 391 + i, LOAD(precurved_tube_kernels_table_15 + i) + LOAD(w + 453 + i));
+    STORE(w + 346 + i, LOAD(precurved_tube_kernels_table_21 + i) + LOAD(w + 436 + i));
   }
 }
 
 static void MADE(precurved_tube_k_richer_balance_loop_5)(casadi_real *w) {
   FOR_FOURS(i, 12) {
     FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14;
-    b0 = EACH(2.0) * LOAD(w + 561 + i);
-    b1 = b0 * LOAD(w + 561 + i);
-    b2 = EACH(2.0) * LOAD(w + 573 + i) * LOAD(w + 573 + i);
-    b3 = EACH(2.0) * LOAD(w + 585 + i);
-    b4 = b3 * LOAD(w + 561 + i);
-    b5 = EACH(2.0) * LOAD(w + 597 + i);
-    b6 = b5 * LOAD(w + 573 + i);
-    b7 = b3 * LOAD(w + 573 + i);
-    b8 = b5 * LOAD(w + 561 + i);
-    b3 = EACH(1.0) - b3 * LOAD(w + 585 + i);
-    b0 = b0 * LOAD(w + 573 + i);
-    b5 = b5 * LOAD(w + 585 + i);
+    b0 = EACH(2.0) * LOAD(w + 540 + i);
+    b1 = b0 * LOAD(w + 540 + i);
+    b2 = EACH(2.0) * LOAD(w + 552 + i) * LOAD(w + 552 + i);
+    b3 = EACH(2.0) * LOAD(w + 564 + i);
+    b4 = b3 * LOAD(w + 540 + i);
+    b5 = EACH(2.0) * LOAD(w + 576 + i);
+    b6 = b5 * LOAD(w + 552 + i);
+    b7 = b3 * LOAD(w + 552 + i);
+    b8 = b5 * LOAD(w + 540 + i);
+    b3 = EACH(1.0) - b3 * LOAD(w + 564 + i);
+    b0 = b0 * LOAD(w + 552 + i);
+    b5 = b5 * LOAD(w + 564 + i);
     b9 = b7 + b8;
     b10 = b0 - b5;
     b11 = b3 - b1;
@@ -583,19 +580,19 @@ static void MADE(precurved_tube_k_richer_balance_loop_5)(casadi_real *w) {
     b14 = EACH(0.15) * b11;
     STORE(w + 241 + i, EACH(1.0) - b1 - b2);
     STORE(w + 253 + i, b4 + b6);
-    STORE(w + 301 + i, b7 - b8);
-    STORE(w + 313 + i, b4 - b6);
-    STORE(w + 325 + i, b3 - b2);
-    STORE(w + 361 + i, b0 + b5);
-    STORE(w + 453 + i, b9);
-    STORE(w + 465 + i, b10);
-    STORE(w + 477 + i, b11);
-    STORE(w + 489 + i, b12);
-    STORE(w + 501 + i, b13);
-    STORE(w + 513 + i, b14);
-    STORE(w + 525 + i, b13 * LOAD(w + 80 + i) - b14 * LOAD(w + 68 + i));
-    STORE(w + 537 + i, b14 * LOAD(w + 56 + i) - b12 * LOAD(w + 80 + i));
-    STORE(w + 549 + i, b12 * LOAD(w + 68 + i) - b13 * LOAD(w + 56 + i));
+    STORE(w + 286 + i, b7 - b8);
+    STORE(w + 298 + i, b4 - b6);
+    STORE(w + 408 + i, b3 - b2);
+    STORE(w + 420 + i, b0 + b5);
+    STORE(w + 432 + i, b9);
+    STORE(w + 444 + i, b10);
+    STORE(w + 456 + i, b11);
+    STORE(w + 468 + i, b12);
+    STORE(w + 480 + i, b13);
+    STORE(w + 492 + i, b14);
+    STORE(w + 504 + i, b13 * LOAD(w + 80 + i) - b14 * LOAD(w + 68 + i));
+    STORE(w + 516 + i, b14 * LOAD(w + 56 + i) - b12 * LOAD(w + 80 + i));
+    STORE(w + 528 + i, b12 * LOAD(w + 68 + i) - b13 * LOAD(w + 56 + i));
   }
 }
 

@@ -41,7 +41,7 @@ int tendon_robot_k_richer_balance(const casadi_real** arg, casadi_real** res, ca
 #define tendon_robot_k_richer_balance_SZ_ARG 4
 #define tendon_robot_k_richer_balance_SZ_RES 1
 #define tendon_robot_k_richer_balance_SZ_IW 0
-#define tendon_robot_k_richer_balance_SZ_W 1645
+#define tendon_robot_k_richer_balance_SZ_W 1605
 int tendon_robot_k_watched(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_watched_SZ_ARG 2
 #define tendon_robot_k_watched_SZ_RES 1

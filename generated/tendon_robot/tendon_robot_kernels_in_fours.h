@@ -454,83 +454,80 @@ static void MADE(tendon_robot_k_richer_balance_loop_3)(casadi_real *w) {
 static void MADE(tendon_robot_k_richer_balance_loop_4)(casadi_real *w) {
   FOR_FOURS(i, 16) {
     STORE(w + 66 + i, LOAD(w + 280 + i) + LOAD(w + 296 + i));
-    STORE(w + 144 + i, LOAD(w + 280 + i) - LOAD(w + 296 + i));
-    STORE(w + 160 + i, LOAD(w + 296 + i) - LOAD(w + 280 + i));
-    STORE(w + 176 + i, LOAD(w + 316 + i) + LOAD(w + 332 + i));
-    STORE(w + 244 + i, LOAD(w + 316 + i) - LOAD(w + 332 + i));
-    STORE(w + 260 + i, LOAD(w + 332 + i) - LOAD(w + 316 + i));
-    STORE(w + 448 + i, LOAD(w + 352 + i) + LOAD(w + 368 + i));
-    STORE(w + 464 + i, LOAD(w + 352 + i) - LOAD(w + 368 + i));
-    STORE(w + 480 + i, LOAD(w + 368 + i) - LOAD(w + 352 + i));
+    STORE(w + 144 + i, LOAD(w + 448 + i) - LOAD(w + 288 + i));
+    STORE(w + 160 + i, LOAD(w + 316 + i) + LOAD(w + 332 + i));
+    STORE(w + 176 + i, LOAD(w + 464 + i) - LOAD(w + 324 + i));
+    STORE(w + 244 + i, LOAD(w + 352 + i) + LOAD(w + 368 + i));
+    STORE(w + 260 + i, LOAD(w + 480 + i) - LOAD(w + 360 + i));
   }
 }
 
 static void MADE(tendon_robot_k_richer_balance_loop_8)(casadi_real *w) {
   FOR_FOURS(i, 24) {
-    STORE(w + 538 + i, SPREAD(w[204]) * LOAD(w + 82 + i));
-    STORE(w + 578 + i, SPREAD(w[205]) * LOAD(w + 106 + i));
-    STORE(w + 602 + i, SPREAD(w[206]) * LOAD(w + 650 + i));
-    STORE(w + 626 + i, SPREAD(w[207]) * LOAD(w + 674 + i));
+    STORE(w + 502 + i, SPREAD(w[204]) * LOAD(w + 82 + i));
+    STORE(w + 526 + i, SPREAD(w[205]) * LOAD(w + 106 + i));
+    STORE(w + 550 + i, SPREAD(w[206]) * LOAD(w + 598 + i));
+    STORE(w + 574 + i, SPREAD(w[207]) * LOAD(w + 478 + i));
   }
 }
 
 static void MADE(tendon_robot_k_richer_balance_loop_9)(casadi_real *w) {
   FOR_FOURS(i, 12) {
-    STORE(w + 94 + i, LOAD(w + 550 + i) + LOAD(w + 590 + i));
+    STORE(w + 94 + i, LOAD(w + 514 + i) + LOAD(w + 538 + i));
   }
 }
 
 static void MADE(tendon_robot_k_richer_balance_loop_10)(casadi_real *w) {
   FOR_FOURS(i, 24) {
-    STORE(w + 110 + i, LOAD(w + 496 + i) + LOAD(w + 602 + i));
+    STORE(w + 110 + i, LOAD(w + 448 + i) + LOAD(w + 550 + i));
   }
 }
 
 static void MADE(tendon_robot_k_richer_balance_loop_11)(casadi_real *w) {
   FOR_FOURS(i, 24) {
-    STORE(w + 496 + i, LOAD(w + 520 + i) + LOAD(w + 626 + i));
+    STORE(w + 448 + i, LOAD(w + 472 + i) + LOAD(w + 574 + i));
   }
 }
 
 static void MADE(tendon_robot_k_richer_balance_loop_12)(casadi_real *w) {
   FOR_FOURS(i, 19) {
     FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8;
-    b0 = EACH(2.0) * LOAD(w + 719 + i);
-    b1 = b0 * LOAD(w + 719 + i);
-    b2 = EACH(2.0) * LOAD(w + 738 + i) * LOAD(w + 738 + i);
-    b3 = EACH(2.0) * LOAD(w + 757 + i);
-    b4 = b3 * LOAD(w + 719 + i);
-    b5 = EACH(2.0) * LOAD(w + 966 + i);
-    b6 = b5 * LOAD(w + 738 + i);
-    b7 = b3 * LOAD(w + 738 + i);
-    b8 = b5 * LOAD(w + 719 + i);
-    b3 = EACH(1.0) - b3 * LOAD(w + 757 + i);
-    b0 = b0 * LOAD(w + 738 + i);
-    b5 = b5 * LOAD(w + 757 + i);
-    STORE(w + 548 + i, EACH(1.0) - b1 - b2);
-    STORE(w + 567 + i, b4 + b6);
-    STORE(w + 586 + i, b7 - b8);
-    STORE(w + 605 + i, b4 - b6);
-    STORE(w + 624 + i, b3 - b2);
-    STORE(w + 643 + i, b0 + b5);
-    STORE(w + 662 + i, b7 + b8);
-    STORE(w + 681 + i, b0 - b5);
-    STORE(w + 700 + i, b3 - b1);
+    b0 = EACH(2.0) * LOAD(w + 671 + i);
+    b1 = b0 * LOAD(w + 671 + i);
+    b2 = EACH(2.0) * LOAD(w + 690 + i) * LOAD(w + 690 + i);
+    b3 = EACH(2.0) * LOAD(w + 709 + i);
+    b4 = b3 * LOAD(w + 671 + i);
+    b5 = EACH(2.0) * LOAD(w + 926 + i);
+    b6 = b5 * LOAD(w + 690 + i);
+    b7 = b3 * LOAD(w + 690 + i);
+    b8 = b5 * LOAD(w + 671 + i);
+    b3 = EACH(1.0) - b3 * LOAD(w + 709 + i);
+    b0 = b0 * LOAD(w + 690 + i);
+    b5 = b5 * LOAD(w + 709 + i);
+    STORE(w + 500 + i, EACH(1.0) - b1 - b2);
+    STORE(w + 519 + i, b4 + b6);
+    STORE(w + 538 + i, b7 - b8);
+    STORE(w + 557 + i, b4 - b6);
+    STORE(w + 576 + i, b3 - b2);
+    STORE(w + 595 + i, b0 + b5);
+    STORE(w + 614 + i, b7 + b8);
+    STORE(w + 633 + i, b0 - b5);
+    STORE(w + 652 + i, b3 - b1);
   }
 }
 
 static void MADE(tendon_robot_k_richer_balance_loop_13)(casadi_real *w) {
   FOR_FOURS(i, 20) {
     FOUR b0, b1, b2;
-    b0 = EACH(0.4) * LOAD(w + 1005 + i);
-    b1 = EACH(0.4) * LOAD(w + 1025 + i);
-    b2 = EACH(0.4) * LOAD(w + 1045 + i);
+    b0 = EACH(0.4) * LOAD(w + 965 + i);
+    b1 = EACH(0.4) * LOAD(w + 985 + i);
+    b2 = EACH(0.4) * LOAD(w + 1005 + i);
     STORE(w + 82 + i, b0);
-    STORE(w + 520 + i, b1);
-    STORE(w + 719 + i, b2);
-    STORE(w + 739 + i, b1 * LOAD(w + 428 + i) - b2 * LOAD(w + 408 + i));
-    STORE(w + 759 + i, b2 * LOAD(w + 388 + i) - b0 * LOAD(w + 428 + i));
-    STORE(w + 985 + i, b0 * LOAD(w + 408 + i) - b1 * LOAD(w + 388 + i));
+    STORE(w + 472 + i, b1);
+    STORE(w + 671 + i, b2);
+    STORE(w + 691 + i, b1 * LOAD(w + 428 + i) - b2 * LOAD(w + 408 + i));
+    STORE(w + 711 + i, b2 * LOAD(w + 388 + i) - b0 * LOAD(w + 428 + i));
+    STORE(w + 945 + i, b0 * LOAD(w + 408 + i) - b1 * LOAD(w + 388 + i));
   }
 }
 

@@ -298,4 +298,5 @@ def test_parameters_move_along_a_path() -> None:
         assert_allclose(arrangement.rate(z, factor), (over - under) / 2e-5, rtol=0, atol=1e-8)
         gaps = arrangement.gaps(z, factor)["rod", "table"]
         slopes = [gaps.at(0.5 + step)[1] for step in (1e-5, -1e-5)]
-        assert_allclose(gaps.at(0.5)[2], (slopes[0] - slopes[1]) / 2e-5, rtol=2e-2)
+        # On the way the bend, up to 0.3, changes its sign.
+        assert_allclose(gaps.at(0.5)[2], (slopes[0] - slopes[1]) / 2e-5, rtol=2e-2, atol=1e-3)
