@@ -387,8 +387,9 @@ def test_what_exact_contact_of_rods_refuses() -> None:
     model = moving(tables)
     with pytest.raises(SceneError, match="a stage of a motion knows no"):
         motion_stage(model, 0.1)
-    with pytest.raises(ExportError, match="an equilibrium in C knows no"):
+    with pytest.raises(ExportError, match="an equilibrium in C knows no") as refused:
         export(model, "nowhere")
+    assert len([problem for problem in refused.value.problems if problem.where == "rod_contacts[0].exact"]) == 1
     chained = free_rods()
     chained["rods"].append(rod("lower", {"rod": "lower", "at": 1.0}) | {"name": "behind"})
     with pytest.raises(SceneError, match="whose ends meet no other rod's"):

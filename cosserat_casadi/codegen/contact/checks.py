@@ -57,7 +57,6 @@ def check_contact(scene: scenes.Scene, asked: Mapping[str, bool]) -> None:
         problems += exact_rods(scene, "an equilibrium in C")
         problems += _refused_parameters(scene)
         problems += _refused_obstacles(scene)
-        problems += exact_rods(scene, "exported C")
         problems += held_by_contact(scene)
     refuse(problems, ExportError)
 
