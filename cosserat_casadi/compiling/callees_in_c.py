@@ -1,4 +1,4 @@
-"""Functions in C that kernels call, and how their arguments lie."""
+"""Functions in C that kernels call, and how their arguments lie in memory."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from cosserat_casadi.compiling.printed_kernels import Callee, PlacedCallee
 from cosserat_casadi.compiling.statements import FOURS, Arithmetic, Block, Statement, computations, number_in_c
 
 Form = tuple[bool, tuple[int, ...]]
-"""Whether an argument differs from column to column, and places behind its first number: what one function reads."""
+"""Whether an argument depends on the column, and offsets of its numbers from the first one."""
 
 
 @dataclass(frozen=True)
 class OperandRun:
-    """How an argument of a call lies: a pointer to its first number in C, and the form that calls share."""
+    """Place of an argument of a call: a pointer to its first number in C, and its form."""
 
     pointer: str
     form: Form
 
 
 def run_of(array: str, places: Sequence[int], lanes: int) -> OperandRun:
-    """How numbers at these places lie, so many lanes of each beside each other."""
+    """Make the run of numbers at places of an array, with a number of lanes beside each other."""
     behind = tuple(lanes * (place - places[0]) for place in places)
     return OperandRun(f"{array} + {lanes * places[0]}", (array != "w", behind))
 
@@ -33,12 +33,12 @@ def arguments_at_places(
     run: Callable[[Sequence[int]], OperandRun | None],
     copied: Sequence[Callable[..., OperandRun]],
 ) -> tuple[list[list[str]], list[Form]]:
-    """Pointers to the arguments of calls of one function, and how each of these arguments lies.
+    """Find pointers to the arguments of calls of one function, and the form of each argument.
 
     Args:
         calls: the calls.
-        run: how operands lie, None where they are not together.
-        copied: for each call the copy of operands, where an argument does not lie alike in all calls.
+        run: function that finds how operands lie; None if they are not in one array.
+        copied: function of each call that copies operands, for arguments that lie differently in some calls.
     """
     pointers: list[list[str]] = [[] for _ in calls]
     forms = []
@@ -55,15 +55,15 @@ def arguments_at_places(
 
 
 def callee_at_places(listing: Listing, forms: Sequence[Form], arithmetic: Arithmetic) -> tuple[PlacedCallee, int]:
-    """A function that reads its arguments where they lie, and its number of statements.
+    """Write a function that reads its arguments in place; also return its number of statements.
 
     Args:
-        listing: the values of the function.
-        forms: how each argument lies.
+        listing: values of the function.
+        forms: form of each argument.
         arithmetic: FOURS for four columns at once, or SINGLE.
 
     Raises:
-        UnknownOperationError: there is an operation that has no form here, or a call of another function.
+        UnknownOperationError: an operation is not supported, or the function calls another one.
     """
 
     def entry(read: Read) -> str:
@@ -76,14 +76,14 @@ def callee_at_places(listing: Listing, forms: Sequence[Form], arithmetic: Arithm
 
 
 def callee(listing: Listing, arithmetic: Arithmetic) -> tuple[Callee, int]:
-    """A function that kernels call, and its number of statements.
+    """Write a function that kernels call; also return its number of statements.
 
     Args:
         listing: the values of the function.
         arithmetic: FOURS for four calls at once, or arithmetic of single numbers.
 
     Raises:
-        UnknownOperationError: there is an operation that has no form here, or a call of another function.
+        UnknownOperationError: an operation is not supported, or the function calls another one.
     """
     function = listing.function
     width = LANES if arithmetic is FOURS else 1
@@ -98,7 +98,7 @@ def callee(listing: Listing, arithmetic: Arithmetic) -> tuple[Callee, int]:
 
 
 def _written(listing: Listing, arithmetic: Arithmetic, entry: Callable[[Read], str]) -> tuple[str, int]:
-    """Body of a function, and its number of statements, from the text of an entry of its arguments."""
+    """Write the body of a function, with the text of each entry of its arguments; also count its statements."""
     function = listing.function
     if listing.calls:
         raise UnknownOperationError(f"a call in {function.name()}, which is called itself")
@@ -125,5 +125,5 @@ def _written(listing: Listing, arithmetic: Arithmetic, entry: Callable[[Read], s
 
 
 def body(lines: Iterable[str]) -> str:
-    """Body of a function."""
+    """Join lines to the body of a function."""
     return "\n".join([" {", *lines, "}\n"])

@@ -19,13 +19,13 @@ from cosserat_casadi.compiling.statements import FOURS, LONGEST, Block, Statemen
 
 
 class ColumnsInC:
-    """Code that computes four columns.
+    """Writer of the C that computes four columns of a Jacobian at once.
 
     Attributes:
-        callees: functions that it calls, by name.
-        statements: how many it has, once it is written.
-        passed: how many fours its parts pass on, and its calls take and give.
-        places: of these fours, by the number of the value.
+        callees: functions that the code calls, by name.
+        statements: number of statements, once the code is written.
+        passed: number of fours that parts pass on, and that calls read and write.
+        places: place of each of these fours, by the number of the value.
     """
 
     def __init__(
@@ -37,15 +37,15 @@ class ColumnsInC:
         numbers: Mapping[int, int],
         run_of_numbers: Callable[[Sequence[int]], OperandRun | None],
     ) -> None:
-        """Nothing is written yet.
+        """Prepare the writer; :meth:`text` writes.
 
         Args:
-            listing: the values.
-            form: the Jacobian.
-            name: of the kernel.
+            listing: values of the kernel.
+            form: form of the Jacobian.
+            name: name of the kernel.
             in_column: whether each value depends on the column.
-            numbers: places of the others that columns read.
-            run_of_numbers: how numbers that do not depend on the column lie, None where they are not together.
+            numbers: places of the values that columns share and read.
+            run_of_numbers: function that finds how shared values lie in memory; None if they are not in one array.
         """
         self.listing = listing
         self.form = form
@@ -60,7 +60,7 @@ class ColumnsInC:
         self.places: dict[int, int] = {}
 
     def text(self, name: str) -> str:
-        """The code, in parts that pass values on, and the loop over all columns under a name."""
+        """Write the code in parts that pass values on, and the loop over all columns under a name."""
         statements = self._statements_of_columns()
         parts, passed = in_parts(statements, LONGEST, _passed_on, self.places, self.passed)
         self.passed += passed
@@ -102,7 +102,7 @@ class ColumnsInC:
         return statements
 
     def _calls_in_columns(self) -> dict[int, list[Statement]]:
-        """Statements of each call that columns make, by its number."""
+        """Write the statements of each call that columns make, by the number of the call."""
         listing = self.listing
         of_columns = [number for number, call in enumerate(listing.calls) if self.in_column[call.results[0]]]
         for number in of_columns:
@@ -126,7 +126,7 @@ class ColumnsInC:
         return statements
 
     def _run_in_columns(self, operands: Sequence[int]) -> OperandRun | None:
-        """How numbers that the code of columns reads lie in one array; None where they do not."""
+        """Find how operands of the code lie in one array; None if they do not."""
         if not any(self.in_column[operand] for operand in operands):
             return self.run_of_numbers(operands)
         if not all(self.in_column[operand] for operand in operands):
@@ -143,7 +143,7 @@ class ColumnsInC:
         return run_of("passed", known, LANES) if len(known) == len(operands) else None
 
     def _passed_copy(self, statements: list[Statement], operands: Sequence[int]) -> OperandRun:
-        """A copy of numbers, as the statements are extended by: one behind the other."""
+        """Append statements that copy operands one after the other, and return how the copies lie."""
         first = self._more(len(operands))
         for place, operand in enumerate(operands, first):
             store = "STORE" if self.in_column[operand] else "FILL"
@@ -151,7 +151,7 @@ class ColumnsInC:
         return run_of("passed", range(first, first + len(operands)), LANES)
 
     def _text(self, elsewhere: dict[int, int], number: int) -> str | None:
-        """Text of a value that is in no variable of the code of columns."""
+        """Text of a value that is not in a variable of the code; None for a variable."""
         value = self.listing.values[number]
         if number in elsewhere:
             return f"PASSED({LANES * elsewhere[number]})"
@@ -164,7 +164,7 @@ class ColumnsInC:
         return None
 
     def _more(self, count: int) -> int:
-        """Where so many more fours begin."""
+        """Reserve a number of fours and return the place of the first."""
         self.passed += count
         return self.passed - count
 

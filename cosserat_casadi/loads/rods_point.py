@@ -1,8 +1,8 @@
-"""The force between two rods that touch at one section of either: energy −N d with d the distance of their centres.
+"""Force between two rods that touch at one section of each: energy −N d, with the distance d of the two centres.
 
-So the force N is along the line of the centres, on the first rod away from the second and on the second the opposite:
-neither a sum nor, without friction, a moment of them remains. N is no input of the scene but follows from the contact,
-see equilibrium/contact; no scene file names this load.
+The force N acts on each rod along the line of the centres, away from the other rod. Both forces, and their moments,
+add up to zero. N is no input of the scene: it follows from the contact (equilibrium/contact).
+No scene file names this load.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from cosserat_casadi.scene.load_records import LoadRecord
 
 
 class RodsPoint(LoadRecord):
-    """Two rods that touch: their names, and the abscissa of the section of either."""
+    """Two rods that touch: their names, and the abscissa of the touching section of each."""
 
     inputs: ClassVar[Mapping[str, InputField]] = {"force": InputField("N", 1, lower=0.0, nonlinear=True)}
 
@@ -31,13 +31,13 @@ class RodsPoint(LoadRecord):
 
 @final
 class RodsPointLoad(Load[RodsPoint]):
-    """N along the line of the centres: it acts on no rod alone, but between two, see model/touching_rods.py."""
+    """Mechanics of the force N between two rods; model/touching_rods.py adds it to the equations of both."""
 
     record = RodsPoint
 
 
 def across(apart: Matrix) -> tuple[Matrix, Matrix]:
-    """Normal n = a/d and curvature (1 − n nᵀ)/d of the distance d of two points that are a apart, 3×1 and 3×3."""
+    """Gradient n = a/d and Hessian (1 − n nᵀ)/d of the distance d = |a| of two points, for a of 3×1; 3×1 and 3×3."""
     distance = ca.norm_2(apart)
     normal = apart / distance
     return normal, (ca.DM.eye(3) - normal @ normal.T) / distance

@@ -1,7 +1,8 @@
-"""Two rods that touch at a section of either, in the equations of a scene: wrenches, and the Jacobian between them.
+"""Two rods that touch at one section of each, in the equations of a scene: wrenches, and blocks of the Jacobian.
 
-With the energy U = −N d and the motions G of the sections by the strains of their rods, and by their bases where these
-float, the Jacobian has the blocks Gᵀ ∂²U G, as two rods have that push each other smoothly (pair_terms.py).
+The energy is U = −N d. G is the derivative of the positions of the sections with respect to the strains of their rods,
+and to the motions of their bases if these float. The Jacobian has the blocks Gᵀ ∂²U G, as for rods that push each other
+smoothly (pair_terms.py).
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class TouchingRods:
-    """A point of contact of two rods at the arguments of a system.
+    """A point of contact of two rods, evaluated at the arguments of a system.
 
     Attributes:
         system: the scene.
@@ -46,7 +47,7 @@ class TouchingRods:
         return self._across[0]
 
     def wrenches(self, rod: str) -> list[WrenchAt]:
-        """The force on a rod, base axes; none on a rod that is not of the pair."""
+        """Force on a rod, in the axes of its base; an empty list for a rod outside the pair."""
         base_R_world = self.system.base(rod).rotation.T
         sides = zip(self.rods, self.load.places, (1.0, -1.0), strict=True)
         return [
@@ -57,7 +58,7 @@ class TouchingRods:
 
     @cached_property
     def stiffness(self) -> dict[tuple[str, str], Matrix]:
-        """Gᵀ ∂²U G by rods, J: in the strains of a rod, then in the motion [δθ; δr] of its base where that floats."""
+        """Blocks Gᵀ ∂²U G by pairs of rods, J, in strains and then the motion [δθ; δr] of a floating base."""
         own, other = (self._motion(rod, at) for rod, at in zip(self.rods, self.load.places, strict=True))
         first, second = self.rods
         pressed = -self.force * self._across[1]
@@ -71,7 +72,7 @@ class TouchingRods:
 
     @cached_property
     def force(self) -> Matrix:
-        """N at the load factor, 1×1, N."""
+        """Force N between the rods, times the load factor, 1×1, N."""
         given = input_value(self.system.discrete.layout, self.load, "force", self.system.arguments.inputs)
         force = ca.DM(1, 1) if given is None else given
         load_factor = self.system.arguments.load_factor
@@ -89,7 +90,7 @@ class TouchingRods:
         return self.system.discrete.rods[rod].grid.node_at(at)
 
     def _motion(self, rod: str, at: Scalar) -> Matrix:
-        """Motion of the centre of a section, world axes, 3×n, or 3×(n + 6) of a rod whose base floats."""
+        """Derivative G of the position of a section, world axes, 3×n, or 3×(n + 6) for a floating base."""
         node = self._node(rod, at)
         rotation = self.system.base(rod).rotation
         by_strains = rotation @ self.system.tangents[rod].position(node)

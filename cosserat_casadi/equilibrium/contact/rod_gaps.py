@@ -1,4 +1,4 @@
-"""Distances of two rods from each other, between the nodes too, and where these are least."""
+"""Gaps between two rods at all sections, between the nodes too, and the places of their minima."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.rod.properties import RodProperties
 
 LOOKED_AT = 4
-"""Sections of DENSE of which one is looked at for valleys."""
+"""Only one of so many sections of DENSE is searched for valleys."""
 
 FINER = (20.0, 400.0, 8000.0)
-"""How much nearer each other sections are in turn where a place is refined."""
+"""Factors by which sections move closer together in each refinement of a place."""
 
 AROUND = np.linspace(-1.0, 1.0, 41)
-"""Places about a section, in distances of sections, at which a valley is refined."""
+"""Offsets from a section at which a valley is refined, over the distance of sections."""
 
 
 class Valley(NamedTuple):
-    """Two sections at which the gap of two rods is the least about them.
+    """Two sections at which the gap of two rods has a local minimum.
 
     Attributes:
         places: abscissae on both rods.
-        gap: over the length of the first.
+        gap: gap over the length of the first rod.
     """
 
     places: tuple[float, float]
@@ -87,8 +87,8 @@ class RodsApart:
     """Two rods that may touch.
 
     Attributes:
-        first: of the rod whose sections are looked at.
-        second: of the other one.
+        first: centre line of the rod whose sections are searched.
+        second: centre line of the other rod.
     """
 
     first: RodLine
@@ -100,9 +100,9 @@ class RodsApart:
         return cls(*(SolvedLine(solution, rod) for rod in rods))
 
     def gaps(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Gap of each section of the first rod to the second, over the length of the first, and X there, (k,) each.
+        """Gaps of sections X of the first rod over its length, and the nearest abscissae of the second rod, (k,) each.
 
-        No gap is less than the true one: the place on the second rod is nearest but for rounding.
+        No gap is less than the true one, because the place on the second rod is the nearest one but for rounding.
         """
         own = self.first.centres(X)
         places = DENSE[(self._distances(own[:, None], self._positions[1]) - self._radii[1]).argmin(axis=1)]
@@ -123,7 +123,7 @@ class RodsApart:
 
     @cached_property
     def valleys(self) -> list[Valley]:
-        """All places at which the gap is the least about them."""
+        """All local minima of the gap."""
         first, second = (positions[::LOOKED_AT] for positions in self._positions)
         radii = [radius[::LOOKED_AT] for radius in self._radii]
         gaps = self._distances(first[:, None], second) - radii[0][:, None] - radii[1]
@@ -131,7 +131,7 @@ class RodsApart:
         return [self._refined(float(places[row])) for row in np.flatnonzero(_lowest(gaps).any(axis=1))]
 
     def _refined(self, near: float) -> Valley:
-        """The valley about a section of the first rod."""
+        """Refine the valley near a section of the first rod."""
         spacing = DENSE[LOOKED_AT]
         for _ in FINER:
             X = np.unique(np.clip(near + spacing * AROUND, 0.0, 1.0))
@@ -157,7 +157,7 @@ class RodsApart:
 def distance_of_lines(
     first: Sequence[FloatArray], second: Sequence[FloatArray]
 ) -> tuple[float, FloatArray, FloatArray]:
-    """Distance of two lines at a point of either, and its derivatives with both parameters, shape (2,) and (2, 2), m.
+    """Distance of two points of two lines, m, with its gradient (2,) and Hessian (2, 2) by both parameters.
 
     Args:
         first: a point of a line, and first and second derivatives of the line with its parameter, shape (3,) each, m.
@@ -172,7 +172,7 @@ def distance_of_lines(
 
 
 def _lowest(values: FloatArray) -> npt.NDArray[np.bool_]:
-    """Which entries of a matrix are not above any of their eight neighbours."""
+    """Whether each entry of a matrix is at most as large as its eight neighbours."""
     rows, columns = values.shape
     framed = np.pad(values, 1, constant_values=np.inf)
     neighbours = [framed[i : i + rows, j : j + columns] for i in range(3) for j in range(3)]
