@@ -16,16 +16,16 @@ Form = tuple[bool, tuple[int, ...]]
 
 @dataclass(frozen=True)
 class OperandRun:
-    """Place of an argument of a call: a pointer to its first number in C, and its form."""
+    """Place of an argument of a call: text of the pointer to its first number, written on demand, and its form."""
 
-    pointer: str
+    pointer: Callable[[], str]
     form: Form
 
 
 def run_of(array: str, places: Sequence[int], lanes: int) -> OperandRun:
     """Make the run of numbers at places of an array, with a number of lanes beside each other."""
     behind = tuple(lanes * (place - places[0]) for place in places)
-    return OperandRun(f"{array} + {lanes * places[0]}", (array != "w", behind))
+    return OperandRun(lambda: f"{array} + {lanes * places[0]}", (array != "w", behind))
 
 
 def arguments_at_places(
@@ -50,7 +50,7 @@ def arguments_at_places(
         found = [one for one in runs if one is not None]
         forms.append(found[0].form)
         for pointer, one in zip(pointers, found, strict=True):
-            pointer.append(one.pointer)
+            pointer.append(one.pointer())
     return pointers, forms
 
 

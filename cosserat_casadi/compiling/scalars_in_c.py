@@ -452,7 +452,7 @@ class _Writing:
         values = [self.listing.values[operand] for operand in operands]
         constants = [value.value for value in values if isinstance(value, Constant)]
         if len(constants) == len(values):
-            return OperandRun(self.tables.of_numbers(constants), (False, tuple(range(len(values)))))
+            return OperandRun(lambda: self.tables.of_numbers(constants), (False, tuple(range(len(values)))))
         places = [self.place.get(operand) for operand in operands]
         known = [place for place in places if place is not None]
         return run_of("w", known, 1) if len(known) == len(places) else None

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+from collections import Counter
 from itertools import pairwise
 from pathlib import Path
 
@@ -15,6 +17,7 @@ from cosserat_casadi.accuracy.cost import MOST_IN_COLUMNS
 from cosserat_casadi.codegen.assembled import Assembled, assembled
 from cosserat_casadi.codegen.blocks import INTERFACE
 from cosserat_casadi.codegen.columns import in_columns, on_path
+from cosserat_casadi.codegen.export import folder_files
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.parameters import with_parameters_behind_inputs
 from cosserat_casadi.codegen.parts import parted
@@ -176,6 +179,15 @@ def test_the_same_digits_at_any_width(kind: str, tmp_path: Path) -> None:
         printed.append({word: value for word, value in found.items() if not word.endswith("_us")})
     assert printed[0]["status"] == "converged"
     assert printed[1:] == printed[:1] * 2
+
+
+def test_every_table_of_kernels_is_read() -> None:
+    files = folder_files(with_parameters(), "lib")
+    kernels = files["lib_kernels.c"]
+    tables = re.findall(r"static const \w+ (lib_kernels_\w+)\[", kernels)
+    words = Counter(re.findall(r"\w+", kernels + files["lib_kernels_in_fours.h"]))
+    assert len(tables) > 5
+    assert [name for name in tables if words[name] < 2] == []
 
 
 def test_unloaded_tangent_with_a_cable_of_given_length() -> None:
