@@ -302,7 +302,7 @@ class Assembly:
             blocks.add(strains, deviation, by_shift @ base_R_world @ motion[3:, :])
 
     def _add_pair(self, blocks: BlockMatrix, terms: PairTerms | TouchingRods) -> None:
-        """Blocks of two rods that push each other in the rows of their strains."""
+        """Blocks, in the rows of the strains of two rods, of the push between them."""
         for (rod, other), stiffness in terms.stiffness.items():
             rows = self.discrete.unknowns.strain(rod)
             work = stiffness[: rows.stop - rows.start, :] / self.discrete.rods[rod].energy_unit

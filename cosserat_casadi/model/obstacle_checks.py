@@ -93,8 +93,8 @@ def refuse_held_by_contact(scene: scenes.Scene) -> None:
 
 
 def held_by_contact(scene: scenes.Scene) -> Iterator[Problem]:
-    """Free rods that touch obstacles or rods exactly, or whose bodies touch obstacles so."""
-    # Contact has no friction: along an obstacle such a rod would be in balance nowhere, or anywhere.
+    """Problems of free rods in exact contact with obstacles or rods, or with bodies in such contact."""
+    # Contact has no friction: along an obstacle such a rod would be in equilibrium nowhere, or anywhere.
     remedy = "give its base a place; or let it move: simulate the scene"
     for obstacle in scene.obstacles:
         for rod in scene.rods:

@@ -43,7 +43,7 @@ for shipped in (
     register(shipped)
 
 for found in (ContactPointLoad, ContactLineLoad, RodsPointLoad, PenetrationLoad, ContactLayerLoad):
-    # What obstacles, and rods, press with: no scene file names it as a load, so that the scene format does not know it.
+    # The push of obstacles, and of rods: no scene file names it as a load, so that the scene format does not have it.
     EFFECTS[found.kind] = found()
 
 

@@ -496,7 +496,7 @@ class System:
         return [*dead, *self._pair_wrenches(rod), *self._drag_wrenches(rod), *self._inertia_wrenches(rod)]
 
     def _pair_wrenches(self, rod: str) -> list[Wrench]:
-        """Forces of other rods, and of other stretches of the rod, on it, base frame."""
+        """Forces of contact with other rods, or with other stretches of the rod, on this rod, base frame."""
         return [wrench for terms in self.coupled_rods if rod in terms.rods for wrench in terms.wrenches(rod)]
 
     def _drag_wrenches(self, rod: str) -> list[Wrench]:

@@ -29,7 +29,7 @@ def moving_model(scene: Scene, discretisation: Mapping[str, Discretisation]) -> 
 
 
 def model_at_rest(model: Model) -> Model:
-    """The model of statics on the discretisation of a model for a motion: free bases are clamped, and no unknowns."""
+    """Return the model of statics on the discretisation of a model for a motion: free bases are clamped."""
     if model.discrete.scaling is not None:
         return model.changed(lambda scene: scene.held())
     return _sharing(model.scene.held().baked(), model.discretisation, moving=False)

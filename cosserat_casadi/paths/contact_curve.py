@@ -247,14 +247,14 @@ class Arrangement:
         return self.equations.ends(rod, self.equations.parts(z)[2])
 
     def gaps(self, z: FloatArray, load_factor: float) -> dict[tuple[str, str], GapsAlong]:
-        """Distances of rods from obstacles, and from other rods, by the names of rod and obstacle, or of both rods."""
+        """Distances of rods from obstacles and other rods, by the names of rod and obstacle, or of both rods."""
         nodes = self._nodes(z, load_factor)
         bodies = self.bodies(z, load_factor)
         gaps: dict[tuple[str, str], GapsAlong] = {}
         for rod, obstacle in pairs(self.scene):
             line = self._line(rod, nodes[rod], z)
             if obstacle.body is not None:
-                # The obstacle sees the rod from its body.
+                # Positions are in the axes of the obstacle's body.
                 line = line.seen_from(bodies[obstacle.body])
             gaps[rod, obstacle.name] = ObstacleGaps(line, obstacle)
         for rods in rod_pairs(self.scene):
@@ -265,7 +265,7 @@ class Arrangement:
         """The centre line of a rod."""
         discrete_rod = self.equations.nominal.model.discrete.rods[rod]
         ends = self.ends(rod, z)
-        # The rate with the abscissa, which moved elements stretch.
+        # The derivative by the abscissa, which moved elements stretch.
         moved = np.diff(ends) / np.diff(discrete_rod.discretisation.breaks)
         by_element = (discrete_rod.grid.elements, -1, 3)
         tangents = nodes.rates.reshape(by_element) / moved[:, None, None]

@@ -75,14 +75,14 @@ class ArrangementEntry:
 
 
 def changes(arrangement: Arrangement, z: FloatArray, load_factor: float, key: Key, X: float) -> Iterator[Transition]:
-    """Transitions to other arrangements where a margin vanishes, the likeliest first.
+    """Transitions to other arrangements at a zero of a margin, the likeliest first.
 
     Args:
         arrangement: the arrangement that ends.
-        z: its last point.
-        load_factor: λ there.
-        key: the margin.
-        X: abscissa that it belongs to.
+        z: last point of the arrangement.
+        load_factor: load factor λ at that point.
+        key: key of the margin.
+        X: abscissa of the margin.
     """
     state = arrangement.state(z)
     if key.watch is Watch.GAP:
@@ -227,7 +227,7 @@ def entered(arrangement: Arrangement, point: ArcPoint, change: Transition) -> Ar
 
 
 def _split(change: Transition, sections: Mapping[str, Sequence[float]]) -> Transition:
-    """This transition with seams in lines where loads act."""
+    """This transition with seams of lines at the loads."""
     opens = tuple((touch.split(sections), number, factor) for touch, number, factor in change.opens)
     return replace(change, state=change.state.split(sections), opens=opens)
 

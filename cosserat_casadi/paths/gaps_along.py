@@ -68,7 +68,7 @@ class LineOfNodes:
         return elements, np.clip((X - self.ends[elements]) / widths, 0.0, 1.0)
 
     def point(self, X: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Position and its first and second derivative with X, at an end of an element those from the base's side."""
+        """Position and its first and second derivative by X; at an element end from the side of the base."""
         elements, local = self._located(np.array([X]))
         element = elements[0]
         weights = chebyshev.interpolation_matrix(self._intervals, local)[0]
@@ -76,7 +76,7 @@ class LineOfNodes:
 
     @property
     def taper(self) -> float:
-        """Rate of the radius with X, m."""
+        """Derivative of the radius by X, m."""
         return float(self.radii[1] - self.radii[0])
 
     def radius(self, X: FloatArray) -> FloatArray:
@@ -105,12 +105,12 @@ class GapsAlong(ABC):
 
     @abstractmethod
     def at(self, X: float) -> tuple[float, float, float]:
-        """Distance and its first and second derivative with X, at an end of an element those from the base's side."""
+        """Distance and its first and second derivative by X; at an element end from the side of the base."""
 
 
 @dataclass(frozen=True)
 class ObstacleGaps(GapsAlong):
-    """Distance from an obstacle, in whose axes the line is.
+    """Distance from an obstacle; the line is in the axes of the obstacle.
 
     Attributes:
         obstacle: the obstacle.
@@ -124,7 +124,7 @@ class ObstacleGaps(GapsAlong):
         return np.asarray(found / self.line.length)
 
     def at(self, X: float) -> tuple[float, float, float]:
-        """Distance and its first and second derivative with X, at an end of an element those from the base's side."""
+        """Distance and its first and second derivative by X; at an element end from the side of the base."""
         distance = distance_along(self.obstacle, *self.line.point(X))
         gap = distance.value - float(self.line.radius(np.array(X)))
         length = self.line.length
@@ -133,7 +133,7 @@ class ObstacleGaps(GapsAlong):
 
 @dataclass(frozen=True)
 class RodsGaps(GapsAlong):
-    """Distance from another rod, where that is nearest.
+    """Distance from the nearest section of another rod.
 
     Attributes:
         other: centre line of the other rod.
@@ -147,7 +147,7 @@ class RodsGaps(GapsAlong):
         return RodsApart(self.line, self.other)
 
     def place(self, X: float) -> float:
-        """Abscissa of the other rod that is nearest to a section."""
+        """Abscissa of the section of the other rod that is nearest to a section."""
         return float(self.apart.gaps(np.array([X]))[1][0])
 
     def distances(self, X: FloatArray) -> FloatArray:

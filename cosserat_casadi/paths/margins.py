@@ -22,9 +22,9 @@ OPEN = 0.005
 """Least width of a line of contact, and least distance of a moving place from the tip, along a path."""
 
 OVER_JOINT = 2e-4
-"""Least distance of the place of a point from the joint of two rods, one of which goes on where the other ends.
+"""Least distance of a point of contact from the joint of two rods, one of which continues the other.
 
-So near an end comes the place of rods that touch rods, too: over a longer way the normal of a thin rod turns much.
+Places of rods that touch rods come as close to an end: on a longer way the normal of a thin rod turns much.
 """
 
 NEAR = 0.01
@@ -63,10 +63,10 @@ class Key:
 
     Attributes:
         watch: quantity of the margin.
-        number: of the contact in the arrangement; −1 for a gap.
-        end: number of the section of a line whose force it is, base to tip; of two rods that touch the one whose
-            place it is.
-        pair: rod, or body, and obstacle.
+        number: index of the contact in the arrangement; −1 for a gap.
+        end: index, base to tip, of the section of a line that the force acts on; for two rods the index of the rod
+            that the place is on.
+        pair: names of rod, or body, and obstacle, or of both rods.
     """
 
     watch: Watch

@@ -51,7 +51,7 @@ def rubbing_entries(result: EquilibriumPath | Motion, rows: int) -> dict[str, An
 
 
 def place_entry(contact: Contact | PathContact) -> dict[str, Any]:
-    """Where a rod touches an obstacle; or which body does; or two rods, and the places where they are nearest."""
+    """Place of a contact: interval of a rod, or body, or both rods with the abscissae at which they are nearest."""
     entry: dict[str, Any] = {"obstacle": contact.obstacle}
     if contact.of_body:
         return {**entry, "body": contact.owner}

@@ -171,8 +171,8 @@ def _kernels(fold: tuple[int, ...], signs: tuple[float, ...], half: tuple[int, .
     parts = both[np.concatenate([kept, swapped]).tolist()] if count else both
     folded_rows = ca.vertcat(parts, rows[middle.tolist()])
     product = entries @ modes
-    sums, differences, own = ca.vertsplit(product, [0, count, 2 * count, entries.shape[0]])
-    halves = product[: 2 * count]
+    halves, own = ca.vertsplit(product, [0, 2 * count, entries.shape[0]])
+    sums, differences = halves[:count], halves[count:]
     mirror = halves[kept.tolist()] - halves[swapped.tolist()] if count else halves
     order = np.argsort(np.concatenate([first, second, middle]))
     unfolded = ca.vertcat(sums + differences, mirror, own)[order.tolist()]

@@ -1,4 +1,4 @@
-"""Rods that touch rods, or themselves: contact of pairs of rods, which is smooth, or exact."""
+"""Contact of rods with rods, or with themselves: smooth, or exact."""
 
 from __future__ import annotations
 

@@ -230,12 +230,12 @@ inputs = ["push.force", "cable.tension"]
 
     @property
     def touches_exactly(self) -> bool:
-        """Whether rods touch obstacles or rods exactly, which is found at rest and in motion."""
+        """Whether the scene has exact contact, with obstacles or between rods."""
         return any(not obstacle.is_smooth for obstacle in self.obstacles) or self.rods_touch_exactly
 
     @property
     def rods_touch_exactly(self) -> bool:
-        """Whether rods touch rods exactly, which is found at rest and in motion."""
+        """Whether the scene has exact contact between rods."""
         return any(pair.exact for pair in self.rod_contacts)
 
     def without_exact_rods(self) -> Scene:

@@ -159,7 +159,8 @@ def solved_poses(solution: Any) -> FloatArray:
 def _contact_numbers(solution: Solution, name: str, obstacle: str, *, of_body: bool) -> list[float]:
     """Number of contacts of a rod or a body with an obstacle, and their resultant.
 
-    Of a rod between the two where the contacts begin and end, NaN without any; of two rods where the first one is.
+    For a rod the start and end of the contacts stand between the two, NaN without any; for two rods the places of
+    the first contact.
     """
     wanted = (name, obstacle, of_body)
     contacts = [own for own in solution.contacts if (own.owner, own.obstacle, own.of_body) == wanted]

@@ -249,7 +249,7 @@ class Written:
             by_forces: derivative of the balance by the forces.
         """
         x, _, _ = self.unknowns
-        # Balances of frames, and of rods beside each other, have units of their own, and parameters change no unit.
+        # The balances of frames, and of two rods, have different units; parameters do not change units.
         discrete = self.system.discrete
         if discrete.frames or discrete.parameters.entries or discrete.rods_points:
             return ca.jacobian(self._gaps, x)

@@ -138,7 +138,7 @@ class Pressing:
 
     Attributes:
         held: rows of the gaps that stay zero, in their order.
-        sliding: entries N (d″)⁻¹ by the rows of the slopes of a point that slides, in the unit of each balance, (n,).
+        sliding: weights N (d″)⁻¹ in the unit of each balance, (n,), by the pair of slope rows of a sliding point.
     """
 
     held: list[int]
@@ -178,7 +178,7 @@ def pressing(found: ContactEquilibrium) -> Pressing:
             if np.linalg.eigvalsh(bends)[0] <= FLAT:
                 held.extend(rows[1:])
                 continue
-            # Every row of the Jacobian is in a unit of its own.
+            # Each row of the Jacobian has its own unit.
             unit = model.discrete.rods[touch.owner].energy_unit / model.discrete.unknowns.units
             for (i, j), share in np.ndenumerate(np.linalg.inv(bends)):
                 sliding[rows[1 + i], rows[1 + j]] = carried[0] * share * unit
@@ -196,8 +196,8 @@ def _eigenvalues(found: ContactEquilibrium) -> FloatArray:
 
 
 def _gap_curvatures(found: ContactEquilibrium, touch: Touch) -> FloatArray:
-    """Second derivatives of the gap with the places of a point of contact that move, over the length, shape (k, k)."""
-    # Gaps are told over the length that the rod has in the scene.
+    """Hessian of the gap by the k moving places of a point of contact, over the length of the rod, shape (k, k)."""
+    # Gaps are relative to the length of the rod in the scene.
     length = found.placed.model.discrete.rods[touch.owner].properties.length
     if touch.other is not None:
         moves = [is_sought(touch.start), is_sought(touch.other)]
@@ -210,15 +210,15 @@ def _gap_curvatures(found: ContactEquilibrium, touch: Touch) -> FloatArray:
 
 
 def _centre_line(found: ContactEquilibrium, rod: str, X: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Position of a section and its first and second derivative with X, shape (3,) each, m."""
+    """Position of a section and its first and second derivative by X, shape (3,) each, m."""
     pose = found.solution.pose(X, rod)
     strain = found.solution.strain(X, rod)
     length = found.placed.model.length(rod, found.solution.inputs)
     tangent = length * pose.rotation @ strain[3:]
-    # The rate of the extension is along the tangent, on which the normal stands.
+    # The rate of the extension is along the tangent, normal to the normal of the contact.
     return pose.position, tangent, length**2 * pose.rotation @ np.cross(strain[:3], strain[3:])
 
 
 def _lines_of_rods(found: ContactEquilibrium, touch: Touch) -> list[tuple[FloatArray, FloatArray, FloatArray]]:
-    """Centres of the sections at which two rods touch, and first and second derivatives with X, shape (3,) each, m."""
+    """Centres of the sections at which two rods touch, with first and second derivative by X, shape (3,) each, m."""
     return [_centre_line(found, rod, X) for rod, X in zip(touch.rods, (touch.start, touch.other), strict=True)]

@@ -553,7 +553,7 @@ def _instead_of_entering(penetrated: Penetrated, touch: Touch | None) -> Iterato
         yield (line,)
         yield (touch, point)
     elif touch.end == TIP:
-        # A tip that lifts off leaves a section inwards to carry the rod, or the rod lies down.
+        # If a tip lifts off, a section further inwards touches, or the rod lies down.
         inwards = Touch.point(penetrated.obstacle, penetrated.owner, min(point.start, TIP - 2 * NEAR))
         yield (inwards,)
         yield (line,)

@@ -240,8 +240,8 @@ class Sharpened:
 
     Attributes:
         shape: the equilibrium.
-        pressures: stretches of nodes that are held, rod by rod.
-        balls: contacts of bodies that are held, and of rods that press each other.
+        pressures: stretches of held nodes, rod by rod.
+        balls: contacts of held bodies, and of rods that press each other.
     """
 
     shape: Solution

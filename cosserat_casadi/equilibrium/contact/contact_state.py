@@ -52,8 +52,8 @@ class Touch:
         end: abscissa at which it ends; ``start`` for a point.
         is_line: whether a stretch lies on the obstacle.
         of_body: whether it is a body that touches.
-        seams: abscissae inside a line where the force per length may jump, base to tip; they are not sought.
-        other: abscissa of the section of the second rod; None of contact with an obstacle.
+        seams: known abscissae inside a line at which the force per length may jump, base to tip.
+        other: abscissa of the touching section of a second rod; None for contact with an obstacle.
     """
 
     obstacle: str
@@ -103,14 +103,14 @@ class Touch:
 
     @property
     def moves(self) -> tuple[bool, ...]:
-        """Whether each of its ends is sought: all but the base and the tip, none of a body."""
+        """Whether each end is an unknown place: all but the base and the tip, and no end of a body."""
         if self.of_body:
             return (False,)
         return tuple(is_sought(end) for end in self.ends)
 
     @property
     def sought(self) -> tuple[tuple[str, Place], ...]:
-        """The places that are unknowns, each with its rod: ends of this contact, then of the second of two rods."""
+        """Unknown places with their rods: ends of this contact, then the place on a second rod."""
         own = [(self.owner, end) for end, moves in zip(self.ends, self.moves, strict=True) if moves]
         if self.other is None or not is_sought(self.other):
             return tuple(own)
@@ -124,7 +124,7 @@ class Touch:
 
     @property
     def moving(self) -> tuple[Place, ...]:
-        """The places that are unknowns."""
+        """The unknown places."""
         return tuple(place for _, place in self.sought)
 
     @property
@@ -188,7 +188,7 @@ class Touch:
         return replace(self, start=ends[0], end=ends[-1])
 
     def split(self, by_rod: Mapping[str, Sequence[float]]) -> Touch:
-        """This contact with seams at the sections that are inside it, and no place on a section.
+        """This contact with seams at the sections inside it, and places moved off the sections.
 
         Args:
             by_rod: abscissae of each rod at which loads make the shear force, or its rate, jump, by name.
@@ -261,11 +261,11 @@ class ContactState:
 
     @property
     def signature(self) -> tuple[tuple[object, ...], ...]:
-        """The discrete part of the state: two states with the same signature differ in their places alone."""
+        """The discrete part of the state: states with equal signatures differ in their places alone."""
         return tuple((touch.owner, touch.obstacle, touch.kind, touch.of_body, touch.held_at) for touch in self.touches)
 
     def split(self, sections: Mapping[str, Sequence[float]]) -> ContactState:
-        """These contacts with seams at the sections of each rod, by name, that are inside them."""
+        """These contacts with seams at the sections, given for each rod by name, that are inside them."""
         return ContactState(tuple(touch if touch.of_body else touch.split(sections) for touch in self.touches))
 
     def reseamed(self, places: Mapping[str, Mapping[float, Place]]) -> ContactState:
@@ -320,7 +320,7 @@ class ContactState:
 
     @property
     def in_order(self) -> bool:
-        """Whether the places of each rod follow each other between base and tip, a little apart."""
+        """Whether the places of each rod ascend between base and tip, at least a little apart."""
         for rod in {rod for touch in self.touches for rod in touch.rods}:
             own = sorted(self.along(rod), key=lambda touch: float(touch.start))
             ends = [0.0, *(end for touch in own for end in touch.carriers if BASE < end < TIP)]
@@ -404,7 +404,7 @@ def with_contacts(scene: scenes.Scene, state: ContactState, modes: Mapping[str, 
 
 
 def contact_loads(scene: scenes.Scene) -> list[ContactPoint | ContactLine | RodsPoint]:
-    """The forces of contacts among the loads of a scene, which no scene file names."""
+    """Loads of a scene that are forces of contacts; no scene file has them."""
     loads: Sequence[scenes.LoadRecord] = scene.loads
     return [load for load in loads if isinstance(load, ContactPoint | ContactLine | RodsPoint)]
 
@@ -472,7 +472,7 @@ def state_in(scene: scenes.Scene) -> ContactState:
 
 
 def _are_apart(touch: Touch, other: Touch) -> bool:
-    """Whether two contacts touch different rods, or different sections, or at the tip different obstacles."""
+    """Whether two contacts are on different rods, at different sections, or at the tip with different obstacles."""
     for rod in set(touch.rods) & set(other.rods):
         one, another = touch.on(rod), other.on(rod)
         at_tip = one.start == TIP and one.obstacle != another.obstacle

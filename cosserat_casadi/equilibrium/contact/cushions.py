@@ -180,7 +180,7 @@ def _coarse(scene: scenes.Scene, rod: scenes.Rod) -> Discretisation:
     meets_rods = any(rod.name in rods for rods in rod_pairs(scene))
     if not (meets_rods or any(obstacle.concerns(rod.name) for obstacle in scene.obstacles)):
         return Discretisation((MODES_ALONE,) * len(rod.admitted), NODES, own)
-    # None as short as the distance of an end of the loads from one of ours may be.
+    # Element ends that are too close to an end that loads ask for are left out.
     thinnest = max((_thinness(obstacle, rod) for obstacle in scene.obstacles), default=0.0)
     # The ratio may be beyond all range: it is bounded before it becomes a whole number.
     elements = max(ELEMENTS, ceil(min(thinnest / (2 * NODES), MOST_ELEMENTS)))
@@ -380,7 +380,7 @@ class Barriers:
     def give_way(self, x: FloatArray) -> bool:
         """Whether a rod or a body has sunk into an obstacle by more than half of the depth that is admitted.
 
-        Two rods have that are inside each other: the cushion between them would have to keep them apart.
+        Two rods give way if they are inside each other: the cushion between them should keep them apart.
         """
         shape = self._shape(x)
         rods_sink = any(

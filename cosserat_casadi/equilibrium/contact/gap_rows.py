@@ -97,7 +97,7 @@ def _body_gap(system: System, touch: Touch) -> Matrix:
 
 
 def _rods_gap(system: System, touch: Touch) -> list[Matrix]:
-    """Gap of two rods at a section of either, and its rate with each place that moves, over the length of the first."""
+    """Gap of two rods at a section of each, and its derivatives by the moving places, over the length of the first."""
     own, other = (RodSurface(system, rod) for rod in touch.rods)
     assert touch.other is not None, "two rods"
     apart = own.centre(touch.start) - other.centre(touch.other)
@@ -148,12 +148,12 @@ class RodSurface:
 
     @property
     def taper(self) -> Scalar:
-        """Rate of the radius with X, m."""
+        """Derivative of the radius by X, m."""
         base, tip = self._radii
         return tip - base
 
     def rate(self, X: Scalar) -> Matrix:
-        """Rate of the centre with X at an end of an element, world axes, 3×1, m."""
+        """Derivative of the centre by X at an end of an element, world axes, 3×1, m."""
         grid = self.discrete.grid
         node = grid.node_at(X)
         tangent = self._world_R_base @ self.system.shapes[self.rod].tangent[:, node]
@@ -181,7 +181,7 @@ class Distances(RodSurface):
         return distance - self.radius(X), normal
 
     def at(self, X: Scalar) -> tuple[Matrix, Matrix]:
-        """Distance and its rate with X at an end of an element, over the length."""
+        """Distance and its derivative by X at an end of an element, over the length."""
         gap, normal = self._gap(self.discrete.grid.node_at(X), X)
         slope = ca.dot(normal, self.system.turned_to(self.obstacle.body, self.rate(X))) - self.taper
         length = self.discrete.properties.length
