@@ -280,7 +280,7 @@ def test_parameters_move_along_a_path() -> None:
     bent = rod("planar", base=base, intrinsic={"curvature": [0, 0.1, 0]})
     named = ["rod.stiffness.bending_y", "rod.base.quaternion", "rod.intrinsic.curvature.y[0]"]
     heavy = scene(weight, rods=[bent], obstacles=[table], parameters=named)
-    model = build(heavy, discretise(heavy, 4, 8))
+    model = build(heavy, discretise(heavy, 4, 16))
     angle = np.radians(80.0)
     last = [0.02, np.cos(angle / 2), 0, np.sin(angle / 2), 0, 0.1]
     begin = np.append(model.pack(), model.parameters.pack())
@@ -298,5 +298,4 @@ def test_parameters_move_along_a_path() -> None:
         assert_allclose(arrangement.rate(z, factor), (over - under) / 2e-5, rtol=0, atol=1e-8)
         gaps = arrangement.gaps(z, factor)["rod", "table"]
         slopes = [gaps.at(0.5 + step)[1] for step in (1e-5, -1e-5)]
-        # On the way the bend, up to 0.3, changes its sign.
-        assert_allclose(gaps.at(0.5)[2], (slopes[0] - slopes[1]) / 2e-5, rtol=2e-2, atol=1e-3)
+        assert_allclose(gaps.at(0.5)[2], (slopes[0] - slopes[1]) / 2e-5, rtol=2e-2)
