@@ -6,8 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import casadi as ca
-import numpy as np
-import numpy.typing as npt
 
 from cosserat_casadi.maths.calls import in_scalars
 
@@ -122,10 +120,12 @@ def _operations_of_node(instruction: int, node: ca.MX, known: dict[int, int]) ->
     if instruction == ca.OP_CALL:
         return most_operations(node.which_function(), known)
     if instruction == ca.OP_MTIMES:
-        # A sum, to which the product of the second and third matrix is added.
-        columns = _entries_of_columns(node.dep(1))
-        rows = _entries_of_columns(node.dep(2).T)
-        return 2 * int(columns @ rows)
+        # The product of the second and the third matrix is added to the first one; nothing is added to zeros.
+        left, right = (ca.DM(node.dep(i).sparsity(), 1.0) for i in (1, 2))
+        terms = (left @ right).nonzeros()
+        first = node.dep(0)
+        onto_zeros = first.is_constant() and not any(first.to_DM().nonzeros())
+        return 2 * int(sum(terms)) - (len(terms) if onto_zeros else 0)
     # A power becomes several products.
     powers = (ca.OP_POW, ca.OP_CONSTPOW)
     if instruction not in powers and (node.is_unary() or node.is_binary()):
@@ -135,10 +135,6 @@ def _operations_of_node(instruction: int, node: ca.MX, known: dict[int, int]) ->
     symbols = [ca.MX.sym(f"before{i}", term.sparsity()) for i, term in enumerate(before)]
     (alone,) = ca.graph_substitute([node], before, symbols)
     return operations(ca.Function("node", symbols, [alone]))
-
-
-def _entries_of_columns(matrix: ca.MX) -> npt.NDArray[np.int64]:
-    return np.diff(np.asarray(matrix.sparsity().colind()))
 
 
 def _scalar_operations(scalar: ca.Function) -> int:
