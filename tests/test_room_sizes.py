@@ -28,7 +28,7 @@ LINES = {
     "maths": 2_600,
     "mjcf": 1_055,
     "model": 11_915,
-    "motion": 15_170,
+    "motion": 15_250,
     "numerics": 5_385,
     "obstacles": 415,
     "page": 810,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import Any, Protocol, TypeVar
 
@@ -498,102 +498,202 @@ def integrated(
     """
     kernels = kernels or interpreted(model)
     flight = flight or free_flight(model, p)
-    switching, phases_now = _switching(model, kernels, x, pieces[0], phases, resume)
-    keeper = flight.keeper
-    acting = time_between_events(model, pieces[-1].end) if model.scene.touches_exactly else pieces[-1].end
-    legs: list[Leg] = []
-    at = flight.to_steps(Instant(pieces[0].start, x, v, np.zeros(model.size)))
-    asked = settings
+    switching, first_phases = _switching(model, kernels, x, pieces[0], phases, resume)
+    begin = flight.to_steps(Instant(pieces[0].start, x, v, np.zeros(model.size)))
+    end = pieces[-1].end
+    acting = time_between_events(model, end) if model.scene.touches_exactly else end
+    growing = _GrowingMotion(
+        model=model,
+        kernels=kernels,
+        flight=flight,
+        switching=switching,
+        method=method,
+        p=p,
+        after_step=after_step,
+        stops=stops,
+        end=end,
+        acting=acting,
+        at=begin,
+        phases=first_phases,
+        settings=settings,
+        begun=begun,
+    )
+    if resume is not None:
+        growing.take_up(resume)
+    for piece in pieces:
+        if piece.end > growing.at.time and not growing.covers(piece):
+            return growing.history(settings)
+    # A cable may become slack or taut in the very end: no motion is left to go on with.
+    growing.end_last(StepOutcome.COMPLETED)
+    return growing.history(settings)
 
-    def history(stopped: int | None = None) -> History:
-        return History(model, tuple(legs), method, asked, flight, stopped)
 
+@dataclass
+class _GrowingMotion:
+    """A motion that is integrated leg by leg; its other attributes are the arguments of :func:`integrated`.
+
+    Attributes:
+        switching: changes between the equations of cables, stops and contacts.
+        end: time at which the motion ends, s.
+        acting: time over which errors of velocity act, s.
+        at: the last instant, in the coordinates of the steps.
+        phases: state of cables, stops and contacts there.
+        settings: settings of the next step.
+        guard: guard that ended the last leg.
+        memory: data of the last step, for a step that continues it.
+        legs: legs that are complete.
+        resumed: whether the motion continues another one.
+        stopped: number of the value that stopped the motion.
+    """
+
+    model: Model
+    kernels: StepKernels
+    flight: FreeFlight
+    switching: Switching[Any]
+    method: Collocation
+    p: FloatArray | None
+    after_step: AfterStep | None
+    stops: Stops | None
+    end: float
+    acting: float
+    at: Instant
+    phases: Any
+    settings: StepSettings
+    begun: Restart[Any] | None
     guard: int | None = None
     memory: CarriedStep | None = None
-    if resume is not None:
-        at = resume.at
-        guard = resume.guard
-        memory = resume.memory
-    for number, piece in enumerate(pieces, start=1):
-        if piece.end <= at.time:
-            continue
-        jumped = None if stops is None or not legs else stops.jumped(legs[-1].piece, piece, flight.to_model(at))
-        if jumped is not None:
-            return history(jumped)
-        if resume is not None and not legs:
-            settings = replace(settings, first=min(resume.first, piece.end - piece.start))
-        plain = equations_of(model, piece, p, kernels)
-        while at.time < piece.end:
-            # Accelerations and multipliers jump where an input or its rates do. Next to the end of a piece its inputs
-            # go on beyond it: in what is left of it rounding would be all that is differentiated.
-            interval = DIFFERENTIATED * piece.smooth
-            if memory is not None and at.time > piece.start:
-                restart = Restart(ConsistentStart(at, 0.0, 0.0, 0.0, 0), phases_now)
-            elif begun is not None and not legs and resume is None:
-                restart = begun
-            else:
-                memory = None
-                restart = switching.restarted(plain, piece, flight.to_model(at), phases_now, guard, interval)
-                restart = flight.restart_of_steps(restart)
-            phases_now = restart.phases
-            if not legs and resume is None and begun is None:
-                sags = sags_by_cable(model, at.x, piece.at(at.time).value, p) if flight.coordinates is None else {}
-                check_start(model, piece, restart, sags, pieces[-1].end)
-            equations, guards = switching.arranged(plain, piece, phases_now)
-            begin = restart.start.instant
-            # What touches an obstacle keeps no momentum.
-            free = keeper is not None and equations.size == model.size
-            settled = partial(keeper.settled, piece=piece) if free and keeper is not None else None
-            settling = switching.settling(plain, piece, phases_now)
-            if settling is not None:
-                settled = flight.settled_in_steps(settling)
+    legs: list[Leg] = field(default_factory=list)
+    resumed: bool = False
+    stopped: int | None = None
+
+    def history(self, settings: StepSettings) -> History:
+        """Return the motion with the settings that its caller asked for."""
+        return History(self.model, tuple(self.legs), self.method, settings, self.flight, self.stopped)
+
+    def take_up(self, resume: Resume) -> None:
+        """Continue another motion."""
+        self.at = resume.at
+        self.guard = resume.guard
+        self.memory = resume.memory
+        self.settings = replace(self.settings, first=resume.first)
+        self.resumed = True
+
+    def covers(self, piece: Piece) -> bool:
+        """Integrate over a piece of the inputs; return whether the motion goes on at its end."""
+        if self.stops is not None and self.legs:
+            self.stopped = self.stops.jumped(self.legs[-1].piece, piece, self.flight.to_model(self.at))
+            if self.stopped is not None:
+                return False
+        # A piece may be longer than the step that fitted into the last one; it begins with the step that was wanted.
+        if self.settings.first is not None:
+            self.settings = replace(self.settings, first=min(self.settings.first, piece.end - piece.start))
+        plain = equations_of(self.model, piece, self.p, self.kernels)
+        while self.at.time < piece.end:
+            restart = self._restart(plain, piece)
+            self.phases = restart.phases
             if restart.stalled is not None:
-                legs.append(Leg(piece, restart, stalled_at(begin), plain))
-                return history()
-            begin_in_model = flight.to_model(begin)
-            ends = None if stops is None else stops.guards(piece, begin_in_model)
-            guards, changes = _joined(guards, ends, begin_in_model)
-            equations, guards = flight.in_steps(equations, guards)
-            own = _with_forces(settings, equations.size, acting)
-            if free and settings.size is None and not model.scene.touches_exactly:
-                own = replace(own, drifting=DRIFTING * (piece.end - piece.start))
-            integration = integrate(
-                equations,
-                begin,
-                piece.end,
-                method,
-                own,
-                after_step,
-                guards,
-                settled,
-                memory,
-                kernels.stepper,
-                kernels.stepper_after,
-            )
-            memory = None
-            legs.append(Leg(piece, restart, integration, plain))
-            if integration.guard is not None and integration.guard >= changes:
-                legs[-1] = replace(legs[-1], integration=replace(integration, outcome=StepOutcome.COMPLETED))
-                return history(integration.guard - changes)
-            if integration.outcome not in (StepOutcome.COMPLETED, StepOutcome.GUARDED):
-                return history()
-            if _chatters(legs, pieces[-1].end):
-                ended = StepOutcome.STALLED if model.scene.touches_exactly else StepOutcome.STEP_TOO_SMALL
-                legs[-1] = replace(legs[-1], integration=replace(integration, outcome=ended))
-                return history()
-            at = integration.end
-            guard = integration.guard
-            first = integration.next_size
-            if not integration.steps and OneSided(model).pairs:
-                # A step that does not see what stiff parts answer to a blow would have the cable change again at once.
-                first = max(SHORTER * first, AT_ONCE * pieces[-1].end)
-            settings = replace(settings, first=first)
-        # A piece may be longer than the step that fits into it; the next begins with what the last one wanted.
-        following = pieces[number].end - pieces[number].start if number < len(pieces) else np.inf
-        settings = replace(settings, first=min(legs[-1].integration.next_size, following))
-    # A cable may become slack or taut in the very end: there is nothing to go on with.
-    legs[-1] = replace(legs[-1], integration=replace(legs[-1].integration, outcome=StepOutcome.COMPLETED))
-    return history()
+                self.legs.append(Leg(piece, restart, stalled_at(restart.start.instant), plain))
+                return False
+            if not self._covers_leg(plain, piece, restart):
+                return False
+        return True
+
+    def _restart(self, plain: MotionEquations, piece: Piece) -> Restart[Any]:
+        """Find the state and the phases in which the next leg begins."""
+        if self.memory is not None and self.at.time > piece.start:
+            return Restart(ConsistentStart(self.at, 0.0, 0.0, 0.0, 0), self.phases)
+        begins = not self.legs and not self.resumed
+        if begins and self.begun is not None:
+            return self.begun
+        self.memory = None
+        # Accelerations and multipliers jump where an input or its rates do. Next to the end of a piece its inputs
+        # go on beyond it: in what is left of it rounding would be all that is differentiated.
+        interval = DIFFERENTIATED * piece.smooth
+        at = self.flight.to_model(self.at)
+        restart = self.switching.restarted(plain, piece, at, self.phases, self.guard, interval)
+        restart = self.flight.restart_of_steps(restart)
+        if begins:
+            inputs = piece.at(self.at.time).value
+            in_model = self.flight.coordinates is None
+            sags = sags_by_cable(self.model, self.at.x, inputs, self.p) if in_model else {}
+            check_start(self.model, piece, restart, sags, self.end)
+        return restart
+
+    def _covers_leg(self, plain: MotionEquations, piece: Piece, restart: Restart[Any]) -> bool:
+        """Integrate until phases change or the piece ends; return whether the motion goes on."""
+        equations, guards = self.switching.arranged(plain, piece, self.phases)
+        settings = self._settings(equations, piece)
+        settled = self._settled(equations, plain, piece)
+        begin = restart.start.instant
+        begin_in_model = self.flight.to_model(begin)
+        ends = None if self.stops is None else self.stops.guards(piece, begin_in_model)
+        guards, changes = _joined(guards, ends, begin_in_model)
+        equations, guards = self.flight.in_steps(equations, guards)
+        integration = integrate(
+            equations,
+            begin,
+            piece.end,
+            self.method,
+            settings,
+            self.after_step,
+            guards,
+            settled,
+            self.memory,
+            self.kernels.stepper,
+            self.kernels.stepper_after,
+        )
+        self.memory = None
+        self.legs.append(Leg(piece, restart, integration, plain))
+        if integration.guard is not None and integration.guard >= changes:
+            self.end_last(StepOutcome.COMPLETED)
+            self.stopped = integration.guard - changes
+            return False
+        if integration.outcome not in (StepOutcome.COMPLETED, StepOutcome.GUARDED):
+            return False
+        if _chatters(self.legs, self.end):
+            touches = self.model.scene.touches_exactly
+            self.end_last(StepOutcome.STALLED if touches else StepOutcome.STEP_TOO_SMALL)
+            return False
+        self.at = integration.end
+        self.guard = integration.guard
+        first = integration.next_size
+        if not integration.steps and OneSided(self.model).pairs:
+            # A step that does not see what stiff parts answer to a blow would have the cable change again at once.
+            first = max(SHORTER * first, AT_ONCE * self.end)
+        self.settings = replace(self.settings, first=first)
+        return True
+
+    def _keeps_momentum(self, equations: MotionEquations) -> bool:
+        """Whether the rods fly freely: a rod that touches an obstacle keeps no momentum."""
+        return self.flight.keeper is not None and equations.size == self.model.size
+
+    def _settings(self, equations: MotionEquations, piece: Piece) -> StepSettings:
+        """Settings of the steps for the equations of a leg."""
+        settings = self.settings
+        forces = equations.size - len(settings.tolerance)
+        if forces:
+            # Contact forces are further unknowns, which have no tolerance.
+            tolerance = np.concatenate([settings.tolerance, np.ones(forces)])
+            settings = replace(settings, tolerance=tolerance, lasting=LASTING * self.acting)
+        drifts = self._keeps_momentum(equations) and not self.model.scene.touches_exactly
+        if drifts and settings.size is None:
+            settings = replace(settings, drifting=DRIFTING * (piece.end - piece.start))
+        return settings
+
+    def _settled(self, equations: MotionEquations, plain: MotionEquations, piece: Piece) -> Settle | None:
+        """Correction of the end of each step; None if steps need none."""
+        settling = self.switching.settling(plain, piece, self.phases)
+        if settling is not None:
+            return self.flight.settled_in_steps(settling)
+        keeper = self.flight.keeper
+        if keeper is None or not self._keeps_momentum(equations):
+            return None
+        return partial(keeper.settled, piece=piece)
+
+    def end_last(self, outcome: StepOutcome) -> None:
+        """Give the last leg another outcome."""
+        last = self.legs[-1]
+        self.legs[-1] = replace(last, integration=replace(last.integration, outcome=outcome))
 
 
 def _switching(
@@ -625,21 +725,6 @@ def _joined(changes: Guards | None, ends: Guards | None, begin: Instant) -> tupl
     if changes is None or ends is None:
         return changes or ends, 0 if changes is None else len(changes(begin))
     return lambda instant: np.concatenate([changes(instant), ends(instant)]), len(changes(begin))
-
-
-def _with_forces(settings: StepSettings, size: int, acting: float) -> StepSettings:
-    """Settings for equations with contact forces as further unknowns, which have no tolerance.
-
-    Args:
-        settings: settings for the equations of the model.
-        size: number of unknowns including the forces.
-        acting: time over which errors of velocity act, s.
-    """
-    more = size - len(settings.tolerance)
-    if more == 0:
-        return settings
-    tolerance = np.concatenate([settings.tolerance, np.ones(more)])
-    return replace(settings, tolerance=tolerance, lasting=LASTING * acting)
 
 
 def _chatters(legs: Sequence[Leg], duration: float) -> bool:
