@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import secrets
 import shutil
 import sys
 import tempfile
@@ -17,6 +18,9 @@ from cosserat_casadi.errors import Problem, SceneError, WriteError
 
 BLOCK = 1 << 20
 """Number of bytes that are copied at a time."""
+
+_UNFINISHED: set[Path] = set()
+"""Files and folders that are being written, under temporary names."""
 
 MESHES = (".glb", ".usda")
 """Suffixes of files of meshes, which need no matplotlib."""
@@ -93,16 +97,11 @@ def atomic_file(path: Path) -> Iterator[Path]:
                 _pour(filled, path)
             return
         target = _target(path)
-        handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".part")
-        temporary = Path(name)
-        try:
-            os.close(handle)
+        with _unfinished(target) as temporary:
+            temporary.touch(mode=0o600, exist_ok=False)
             yield temporary
             temporary.chmod(0o644)
             temporary.replace(target)
-        except BaseException:
-            temporary.unlink(missing_ok=True)
-            raise
 
 
 @contextmanager
@@ -116,14 +115,41 @@ def atomic_folder(path: Path) -> Iterator[Path]:
     """
     with write_errors(path):
         target = _target(path)
-        temporary = Path(tempfile.mkdtemp(dir=target.parent, prefix=f".{target.name}.", suffix=".part"))
-        try:
+        with _unfinished(target) as temporary:
+            temporary.mkdir(mode=0o700)
             yield temporary
             temporary.chmod(0o755)
             temporary.rename(target)
-        except BaseException:
-            shutil.rmtree(temporary, ignore_errors=True)
-            raise
+
+
+@contextmanager
+def _unfinished(target: Path) -> Iterator[Path]:
+    """A path beside a target for its unfinished content, which is removed after a failure.
+
+    The name is known before the content exists: a signal at any moment leaves nothing behind.
+    """
+    temporary = target.with_name(f".{target.name}.{secrets.token_hex(8)}.part")
+    _UNFINISHED.add(temporary)
+    try:
+        yield temporary
+    except BaseException:
+        _remove(temporary)
+        raise
+    finally:
+        _UNFINISHED.discard(temporary)
+
+
+def remove_unfinished() -> None:
+    """Remove unfinished files and folders, before the process ends without cleanup."""
+    for path in list(_UNFINISHED):
+        _remove(path)
+
+
+def _remove(path: Path) -> None:
+    if path.is_dir():
+        shutil.rmtree(path, ignore_errors=True)
+    else:
+        path.unlink(missing_ok=True)
 
 
 def _target(path: Path) -> Path:

@@ -19,6 +19,8 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from types import TracebackType
 
+from cosserat_casadi.files import remove_unfinished
+
 
 class StoppedError(Exception):
     """A command was stopped, and has printed so."""
@@ -84,7 +86,8 @@ def end_in_time(sentence: str, exit_codes: Mapping[int, int]) -> None:
 
 
 def remove_temporary_files() -> None:
-    """Remove the folder of temporary files, before the process ends without cleanup."""
+    """Remove the folder of temporary files and unfinished files, before the process ends without cleanup."""
+    remove_unfinished()
     for folder in _temporary_folders:
         shutil.rmtree(folder, ignore_errors=True)
 

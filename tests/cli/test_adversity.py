@@ -12,6 +12,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from pathlib import Path
 
 import pytest
@@ -19,7 +20,10 @@ from typer.main import get_command
 
 from cosserat_casadi.cli.exit_codes import INTERRUPTED, NOT_FOUND, NOT_WRITTEN, REFUSED, TERMINATED
 from cosserat_casadi.cli.main import app
+from cosserat_casadi.cli.signals import remove_temporary_files
 from cosserat_casadi.cli.terminal import HANDLER, prepare_streams
+from cosserat_casadi.errors import WriteError
+from cosserat_casadi.files import atomic_file, atomic_folder
 from tests.commands import WIRE
 from tests.families import mostly_slow
 
@@ -369,6 +373,18 @@ def test_folder_that_takes_nothing(folder: Path, command: str) -> None:
     assert code in (REFUSED, NOT_WRITTEN)
     assert "/proc" in said
     assert new_files(folder) == []
+
+
+@pytest.mark.parametrize("unfinished", [atomic_file, atomic_folder])
+def test_what_is_being_written_is_removed_before_an_abrupt_end(
+    tmp_path: Path, unfinished: Callable[[Path], AbstractContextManager[Path]]
+) -> None:
+    with pytest.raises(WriteError), unfinished(tmp_path / "out") as part:
+        assert part.parent == tmp_path
+        assert part.exists()
+        remove_temporary_files()
+        assert list(tmp_path.iterdir()) == []
+    assert list(tmp_path.iterdir()) == []
 
 
 def listens(process: subprocess.Popen[bytes]) -> bool:
