@@ -171,7 +171,7 @@ def _contacts_of_pair(solution: Solution, pair: ContactPair) -> Iterator[Contact
     (X, other_X), shares = zip(*map(section_places, discrete_rods, pair.sections), strict=True)
     lengths = [model.length(rod, solution.inputs) for rod in pair.rods]
     meets = pair.meets(lengths[0] * X, lengths[1] * other_X)
-    touching = _touching(solution, pair, X, other_X)
+    touching = _touching(solution, pair, X, other_X) + 2 * pair.padding
     reach = touching + pair.width
     inside = np.where(meets, np.maximum(reach**2 - np.sum(apart**2, axis=2), 0.0), 0.0)
     pressed = inside.max(axis=1) > 0.0

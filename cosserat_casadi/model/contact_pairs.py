@@ -70,6 +70,7 @@ class ContactPair:
         sections: number of sections of each rod.
         friction: coefficient of friction.
         slip_speed: speed below which sticking sections creep, m/s.
+        padding: length that is added to the radius of each section, m. The law takes no width far above the radii.
     """
 
     name: str
@@ -80,6 +81,7 @@ class ContactPair:
     sections: tuple[int, int]
     friction: float
     slip_speed: float
+    padding: float = 0.0
 
     def widened(self, ratio: float) -> ContactPair:
         """The pair with its width times a ratio; it pushes about as hard at zero gap."""
@@ -158,7 +160,10 @@ def contact_pairs(
         thinnest = float(radii[0].min() + radii[1].min())
         thickest = largest(entries(section_radii(rods[pair[0]].properties, LOOKED_AT)))
         itself = pair[0] == pair[1]
-        spacing = SPACING * float(half_of_stretch(thinnest, width))
+        # Cushions of thin rods are wider than the rods are thick: rods with padding push each other as far apart.
+        padding = max(width - thinnest, 0.0) / 4
+        width -= 2 * padding
+        spacing = SPACING * float(half_of_stretch(thinnest + 2 * padding, width))
         name = contact.label if contact.rods is not None else f"{contact.name or 'contact'} of {pair[0]} and {pair[1]}"
         yield ContactPair(
             name=name,
@@ -169,6 +174,7 @@ def contact_pairs(
             sections=(_sections(name, rods[pair[0]], spacing), _sections(name, rods[pair[1]], spacing)),
             friction=contact.friction,
             slip_speed=contact.slip_speed,
+            padding=padding,
         )
 
 

@@ -47,12 +47,14 @@ class ContactSide:
         count: number of sections that represent a part of the rod each. Further sections at the tip, which represent
             none, fill the last panel up to S sections.
         history: memory of friction from the last point of a path; None without a path.
+        padding: length that is added to the radius of each section, m.
     """
 
     system: System
     rod: str
     count: int
     history: PairHistory | None = None
+    padding: float = 0.0
 
     @property
     def discrete(self) -> DiscreteRod:
@@ -91,6 +93,8 @@ class ContactSide:
         if ratio is not None:
             lengths = ratio * lengths
         radii = as_matrix(repeated(section_radii(rod.properties, X), self.columns))
+        if self.padding:
+            radii = radii + self.padding
         along = rod.properties.length * as_matrix(X)
         if ratio is not None:
             along = ratio * along
@@ -214,7 +218,8 @@ class PairTerms:
     def sides(self) -> tuple[ContactSide, ...]:
         """The sections of both rods; one entry for a rod that touches itself."""
         names = dict(zip(self.pair.rods, self.pair.sections, strict=True))
-        return tuple(ContactSide(self.system, name, count, self.history) for name, count in names.items())
+        shared = (self.history, self.pair.padding)
+        return tuple(ContactSide(self.system, name, count, *shared) for name, count in names.items())
 
     @cached_property
     def section_pairs(self) -> SectionPairs:

@@ -172,6 +172,35 @@ def test_what_one_rod_bears_the_other_presses_with() -> None:
     assert_allclose(upper, [0, 0, 1e-3], rtol=0, atol=1e-15)
 
 
+def thin_pair(radius: float) -> tuple[Table, FloatArray]:
+    """Two crossed cantilevers of one radius, pushed like those of :func:`crossed`, and the force on the upper one."""
+    push = np.array([0, 0, -1e-3 * (radius / 1e-3) ** 4])
+    below = BELOW | {"position": [0.07, -0.05, -0.002 - 2 * radius]}
+    return pressed(push.tolist(), below, (radius, radius)), push
+
+
+def test_cushions_of_thin_rods_push_them_apart() -> None:
+    """Wires much thinner than the cushion between them, by which the search for their contact begins."""
+    tables, push = thin_pair(1e-4)
+    found = solve(build(scene_from_dict(tables)))
+    (contact,) = found.contacts
+    assert found.converged and found.stable
+    assert contact.on_rods is not None
+    upper, lower = (found.pose(X, name).position for X, name in zip(contact.on_rods, "ab", strict=True))
+    assert_allclose(np.linalg.norm(upper - lower), 2e-4, rtol=0, atol=1e-9 * LENGTH)
+    clamps = found.base_wrench("a").force + found.base_wrench("b").force
+    assert_allclose(clamps, -push, rtol=0, atol=1e-11 * np.linalg.norm(push))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("radius", [2e-5, 1e-4, 3e-4])
+def test_crossed_wires_are_those_of_shooting_within_the_told_error(radius: float) -> None:
+    tables, push = thin_pair(radius)
+    found = solve(scene_from_dict(tables | {"accuracy": {"tolerance": 1e-6}}))
+    assert found.converged and found.error_estimate is not None
+    assert max(shot(found, (radius, radius), (push, np.zeros(3)))) < found.error_estimate
+
+
 def test_jacobian_is_that_by_differences() -> None:
     equations, z = equations_at(crossed())
     jacobian = equations.jacobian(z, equations.given)
