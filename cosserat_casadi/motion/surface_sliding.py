@@ -174,7 +174,8 @@ class SurfaceSliding:
             rows, pushes = rows_by_poses @ of_poses, forces_by_poses @ of_poses
             if shift is not None:
                 rows, pushes = rows + rows_by_X @ shift, pushes + forces_by_X @ shift
-            return ca.vertcat(rows[:2, :] + of_rates, rows[2:, :], of_generalised + by_x.T @ pushes)
+            stacked: Matrix = ca.vertcat(rows[:2, :] + of_rates, rows[2:, :], of_generalised + by_x.T @ pushes)
+            return stacked
 
         shifted, shifted_rates, shifted_force = (
             ca.jtimes(part, section, change) for part in (poses, rates, generalised)
