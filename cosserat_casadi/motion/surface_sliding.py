@@ -134,7 +134,7 @@ class SurfaceSliding:
         rows = ca.vertcat(*self._law.call([poses, rates, abscissae, axis]))
         forces = self._tangents(poses, abscissae, axis) @ force
         matrices = [ca.jacobian(part, by) for part in (rows, forces) for by in (poses, abscissae)]
-        results = [ca.densify(result) for result in (forces, *matrices)]
+        results = ca.cse([ca.densify(result) for result in (forces, *matrices)])
         return ca.Function("law_derivatives", [poses, rates, abscissae, axis, force], results)
 
     @cached_property

@@ -16,6 +16,7 @@ from scipy.spatial.transform import Rotation
 from cosserat_casadi import build, scene_from_dict, simulate
 from cosserat_casadi.compiling.compiler import compiled_texts, find_compiler
 from cosserat_casadi.compiling.texts import render, resource
+from cosserat_casadi.maths.calls import functions_within
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion import contact_law
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact
@@ -270,6 +271,10 @@ def test_derivatives_of_sliding_are_those_of_differences() -> None:
 
         differences = central_differences(moved, at[number], 1e-6)[: derivative.shape[0]]
         assert_allclose(derivative.full(), differences, rtol=0, atol=1e-7 * np.abs(differences).max())
+    # Derivatives of the generalised force as a whole take 51 000, of which compilers make minutes.
+    kinds = "SXFunction", "MXFunction"
+    within = [each for each in functions_within(sliding.derivatives) if each.class_name() in kinds]
+    assert sum(each.n_instructions() for each in within) < 25_000
 
 
 SECOND = """
