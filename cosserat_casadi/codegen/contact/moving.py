@@ -42,15 +42,12 @@ FRICTION_FILES = ("contact_friction.c", "friction_sensitivity.c")
 ROD_FILES = ("struck_rods.h", "struck_rods.c")
 """Files of the folder ``c`` that such a library includes where rods may touch rods."""
 
-MEMBERS = dict.fromkeys(
-    (
-        *("points", "is_body", "elements", "nodes", "ends", "to_coefficients", "looks", "watches_base", "watches_tip"),
-        *("laid", "laid_count", "length", "force_unit", "radius_at_base", "radius_at_tip", "restitution", "stride"),
-        *("surface", "distance"),
-    ),
-    "0",
+MEMBERS = (
+    *("points", "is_body", "elements", "nodes", "ends", "to_coefficients", "looks", "watches_base", "watches_tip"),
+    *("laid", "laid_count", "length", "force_unit", "radius_at_base", "radius_at_tip", "restitution", "stride"),
+    *("surface", "distance"),
 )
-"""Members of the record of a pair in C, in the order of ``gaps_in_motion.c.in``, with their zeros."""
+"""Members of the record of a pair in C, in the order of ``gaps_in_motion.c.in``."""
 
 FEWEST_TOUCHES = 8
 """Least number of contacts of a rod with an obstacle for which arrays have room."""
@@ -262,11 +259,9 @@ def _tables(model: Model, faces: list[Facing]) -> Iterator[str]:
 
 def _whole(model: Model, fields: Mapping[str, object]) -> dict[str, object]:
     """Put the members of a pair in the order of their declaration, for which C++ asks, with zeros for missing ones."""
-    members = dict(MEMBERS)
-    if model.scene.rubs_exactly:
-        members |= {"coefficients": "{0, 0, 0}", "rubbing": "0", "rubbing_derivatives": "0"}
-    if any(isinstance(own, RodsFacing) for own in struck_in_steps(model)):
-        members["other"] = "0"
+    friction = {"coefficients": "{0, 0, 0}", "rubbing": "0", "rubbing_derivatives": "0"}
+    members = dict.fromkeys(MEMBERS, "0") | (friction if model.scene.rubs_exactly else {})
+    members |= {"other": "0"} if any(isinstance(own, RodsFacing) for own in struck_in_steps(model)) else {}
     assert set(fields) <= set(members), "members are declared in gaps_in_motion.c.in"
     return {name: fields.get(name, zero) for name, zero in members.items()}
 
