@@ -58,54 +58,92 @@ class SurfaceSliding:
         }
         return [ca.MX.sym(name, rows) for name, rows in sizes.items()]
 
-    def _sliding(self, section: Matrix) -> tuple[Matrix, Matrix]:
-        """Velocity along both tangents, in lengths per second, and components of the rod's direction, 2×1 each.
+    @cached_property
+    def _law(self) -> ca.Function:
+        """(poses, their rates, abscissae, axis) ↦ velocity along both tangents and components of the rod's direction.
 
-        Args:
-            section: weights of the nodes, then the abscissae, (M + s)×1.
+        Poses of the touching sections are stacked as by :func:`_pose`, 12s×1; results are 2×1 each, the first one in
+        lengths per second. The velocity is linear in the rates.
         """
-        axis, facing = self._symbols[5], self.facing
-        count = facing.points.count
-        if isinstance(facing, RodsFacing):
-            own, other = section[: facing.node_count], section[facing.node_count : count]
-            centre, rotation = self._pose(facing, own)
-            other_centre, other_rotation = self._pose(facing.other, other)
-            way = centre - other_centre
+        facing = self.facing
+        sides = [facing, facing.other] if isinstance(facing, RodsFacing) else [facing]
+        stacked, rates = ca.SX.sym("poses", 12 * len(sides)), ca.SX.sym("rates", 12 * len(sides))
+        abscissae, axis = ca.SX.sym("X", len(sides)), ca.SX.sym("axis", 3)
+        poses, moved = (list(map(_apart, ca.vertsplit(each, 12))) for each in (stacked, rates))
+        radii = [_radius(side, X) for side, X in zip(sides, ca.vertsplit(abscissae), strict=True)]
+        centre, rotation = poses[0]
+        if len(sides) == 2:
+            way = centre - poses[1][0]
             normal = way / ca.sqrt(ca.sumsqr(way))
-            radius, other_radius = _radius(facing, section[count]), _radius(facing.other, section[count + 1])
-            arm = -radius / (radius + other_radius) * way
-            own_arm = _material(rotation, arm)
-            other_arm = _material(other_rotation, way + arm)
-            velocity = self._velocity(centre, rotation, own_arm)
-            velocity -= self._velocity(other_centre, other_rotation, other_arm)
+            arm = -radii[0] / (radii[0] + radii[1]) * way
+            velocity = _velocity(moved[0], _material(rotation, arm))
+            velocity -= _velocity(moved[1], _material(poses[1][1], way + arm))
         else:
-            centre, rotation = self._pose(facing, section[:-1])
             _, normal, _ = surface(facing.obstacle)(centre)
-            arm = -_radius(facing, section[-1]) * normal
-            velocity = self._velocity(centre, rotation, rotation.T @ arm)
+            velocity = _velocity(moved[0], rotation.T @ (-radii[0] * normal))
         first = axis - ca.dot(normal, axis) * normal
         first = first / ca.sqrt(ca.sumsqr(first))
         tangents = ca.horzcat(first, ca.cross(normal, first))
         along = tangents.T @ rotation[:, 2]
         # A rod that stands upright on the surface has no direction along it.
-        return tangents.T @ velocity / facing.length, along / ca.sqrt(ca.sumsqr(along) + STANDING**2)
+        along = along / ca.sqrt(ca.sumsqr(along) + STANDING**2)
+        results = [tangents.T @ velocity / facing.length, along]
+        return ca.Function("law", [stacked, rates, abscissae, axis], ca.cse([ca.densify(part) for part in results]))
 
-    def _pose(self, side: Facing, weights: Matrix) -> list[Matrix]:
-        """Centre, 3×1, m, and rotation, 3×3, of a section of a rod, or of a body, in the world."""
-        x, inputs = self._symbols[:2]
-        return in_stacked_inputs(side.model, x, inputs, lambda system: _pose(side, system, weights))
+    @cached_property
+    def _poses(self) -> Matrix:
+        """Poses of the touching sections in the unknowns, the inputs and the section, 12s×1."""
+        facing, (x, inputs, _, _, section, _) = self.facing, self._symbols
+        count = facing.points.count
+        sides: list[tuple[Facing, Matrix]] = [(facing, section[:count])]
+        if isinstance(facing, RodsFacing):
+            own, other = facing.node_count, count
+            sides = [(facing, section[:own]), (facing.other, section[own:other])]
 
-    def _velocity(self, centre: Matrix, rotation: Matrix, arm: Matrix) -> Matrix:
-        """Velocity of a material point at an arm from the centre of its section, along the directors, 3×1, m/s."""
+        def stacked(system: System) -> list[Matrix]:
+            return [_pose(side, system, weights) for side, weights in sides]
+
+        return ca.vertcat(*in_stacked_inputs(facing.model, x, inputs, stacked))
+
+    @cached_property
+    def _rates(self) -> Matrix:
+        """Rates of the poses, 12s×1."""
         x, inputs, v, rate, _, _ = self._symbols
-        moved = ca.reshape(_rate(ca.horzcat(centre, rotation), [(x, v), (inputs, rate)]), 3, 4)
-        return moved[:, 0] + moved[:, 1:] @ arm
+        return ca.jtimes(self._poses, x, v) + ca.jtimes(self._poses, inputs, rate)
+
+    @cached_property
+    def _tangents(self) -> ca.Function:
+        """(poses, abscissae, axis) ↦ gradients of the velocity by the rates of the poses, 12s×2.
+
+        They are also the forces on the poses that do the work of unit forces along both tangents.
+        """
+        poses, rates, abscissae, axis = self._law.sx_in()
+        sliding, _ = self._law.call([poses, rates, abscissae, axis])
+        gradients = ca.densify(ca.jacobian(sliding, rates).T)
+        return ca.Function("tangents", [poses, abscissae, axis], [gradients])
+
+    @cached_property
+    def _law_derivatives(self) -> ca.Function:
+        """(poses, rates, abscissae, axis, force along both tangents) ↦ forces on the poses, 12s×1, and four matrices.
+
+        The matrices are the derivatives of velocity and direction, four rows, by poses and by abscissae, and those of
+        the forces on the poses.
+        """
+        poses, rates, abscissae, axis = self._law.sx_in()
+        force = ca.SX.sym("force", 2)
+        rows = ca.vertcat(*self._law.call([poses, rates, abscissae, axis]))
+        forces = self._tangents(poses, abscissae, axis) @ force
+        matrices = [ca.jacobian(part, by) for part in (rows, forces) for by in (poses, abscissae)]
+        results = ca.cse([ca.densify(result) for result in (forces, *matrices)])
+        return ca.Function("law_derivatives", [poses, rates, abscissae, axis, force], results)
 
     @cached_property
     def function(self) -> ca.Function:
         """(x, inputs, v, rate, section, axis) ↦ velocity, 2×1; gradients by v, n×2; direction of the rod, 2×1."""
-        sliding, along = self._sliding(self._symbols[4])
-        by_v = ca.jacobian(sliding, self._symbols[2]).T
+        x, _, _, _, section, axis = self._symbols
+        abscissae = section[self.facing.points.count :]
+        sliding, along = self._law(self._poses, self._rates, abscissae, axis)
+        by_v = ca.jtimes(self._poses, x, self._tangents(self._poses, abscissae, axis), True)
         return ca.Function("rubbing", self._symbols, [ca.densify(part) for part in (sliding, by_v, along)])
 
     @cached_property
@@ -115,17 +153,42 @@ class SurfaceSliding:
         The first arguments are those of :attr:`function`. Derivatives by x, X and inputs have 4 + n rows: of the
         velocity, the direction and the generalised force. Those by the rates of the inputs are of the velocity, 2×k.
         Both abscissae of two rods have a column each, in the change and in the derivatives by X.
+
+        The chain rule goes through the poses q of the touching sections. The only second derivatives of q are then
+        those of the sums wᵀq and τᵀq̇, with the forces w on the poses and the tangents τ held. Such a sum does not
+        couple both rods, and its code is a fraction of that of the derivatives of the generalised force as a whole.
         """
-        x, inputs, v, rate, section, _ = self._symbols
-        sides = section.shape[0] - self.facing.points.count
-        change, force = ca.MX.sym("change", section.shape[0], sides), ca.MX.sym("force", 2)
-        shift = ca.MX.sym("shift", sides)
-        sliding, along = self._sliding(section + change @ shift)
-        rows = ca.vertcat(sliding, along, ca.gradient(ca.dot(force, sliding), v))
-        parts = [ca.jacobian(rows, x), ca.jacobian(rows, shift), ca.jacobian(rows, inputs), ca.jacobian(sliding, rate)]
-        parts = ca.graph_substitute(parts, [shift], [ca.MX(sides, 1)])
+        x, inputs, _, _, section, axis = self._symbols
+        poses, rates, abscissae = self._poses, self._rates, section[self.facing.points.count :]
+        change, force = ca.MX.sym("change", section.shape[0], abscissae.shape[0]), ca.MX.sym("force", 2)
+        forces, *matrices = self._law_derivatives(poses, rates, abscissae, axis, force)
+        rows_by_poses, rows_by_X, forces_by_poses, forces_by_X = matrices
+        tangents = self._tangents(poses, abscissae, axis)
+        held = ca.MX.sym("held_forces", forces.shape[0])
+        along = ca.MX.sym("held_tangents", *tangents.shape)
+        generalised = ca.jtimes(poses, x, held, True)
+        by_x, by_inputs = ca.jacobian(poses, x), ca.jacobian(poses, inputs)
+
+        def chained(of_poses: Matrix, of_rates: Matrix, of_generalised: Matrix, shift: Matrix | None = None) -> Matrix:
+            """Derivatives, (4 + n)×k, from those of poses, of τᵀq̇, of the generalised force, and of abscissae."""
+            rows, pushes = rows_by_poses @ of_poses, forces_by_poses @ of_poses
+            if shift is not None:
+                rows, pushes = rows + rows_by_X @ shift, pushes + forces_by_X @ shift
+            stacked: Matrix = ca.vertcat(rows[:2, :] + of_rates, rows[2:, :], of_generalised + by_x.T @ pushes)
+            return stacked
+
+        shifted, shifted_rates, shifted_force = (
+            ca.jtimes(part, section, change) for part in (poses, rates, generalised)
+        )
+        results = [
+            chained(by_x, ca.jtimes(rates, x, along, True).T, ca.jacobian(generalised, x)),
+            chained(shifted, along.T @ shifted_rates, shifted_force, change[self.facing.points.count :, :]),
+            chained(by_inputs, ca.jtimes(rates, inputs, along, True).T, ca.jacobian(generalised, inputs)),
+            along.T @ by_inputs,
+        ]
+        results = ca.graph_substitute(results, [held, along], [forces, tangents])
         arguments = [*self._symbols, change, force]
-        return ca.Function("rubbing_derivatives", arguments, [ca.densify(part) for part in parts])
+        return ca.Function("rubbing_derivatives", arguments, [ca.densify(result) for result in results])
 
     @property
     def moving(self) -> list[int]:
@@ -150,20 +213,25 @@ def _material(rotation: Matrix, arm: Matrix) -> Matrix:
     return ca.vertcat(*(ca.dot(one, arm) for one in across)) / ca.dot(across[0], first)
 
 
-def _rate(quantity: Matrix, moved: list[tuple[ca.MX, ca.MX]]) -> Matrix:
-    """Rate of a quantity, stacked in one column, from pairs of an argument and its rate."""
-    stacked = ca.vec(quantity)
-    return sum((ca.jtimes(stacked, argument, rate) for argument, rate in moved), ca.MX(stacked.shape[0], 1))
-
-
-def _pose(facing: Facing, system: System, weights: Matrix) -> list[Matrix]:
-    """Centre, 3×1, m, and rotation, 3×3, of a section of a rod, or of a body, in the axes of the obstacle."""
+def _pose(facing: Facing, system: System, weights: Matrix) -> Matrix:
+    """Centre, m, and columns of the rotation of a section of a rod, or of a body, in the axes of the obstacle, 12×1."""
     if facing.of_body:
         pose = system.body(facing.owner)
-        return [ca.MX(pose.position), ca.MX(pose.rotation)]
+        return ca.vertcat(ca.MX(pose.position), ca.vec(ca.MX(pose.rotation)))
     position, *directors = system.sections(facing.owner, weights)
     seen = system.seen_from(facing.carrier, position)
-    return [seen, system.turned_to(facing.carrier, ca.horzcat(*directors))]
+    return ca.vertcat(seen, ca.vec(system.turned_to(facing.carrier, ca.horzcat(*directors))))
+
+
+def _apart(pose: Matrix) -> tuple[Matrix, Matrix]:
+    """Centre, 3×1, and rotation, 3×3, of a stacked pose; or their rates."""
+    return pose[:3], ca.reshape(pose[3:], 3, 3)
+
+
+def _velocity(rates: tuple[Matrix, Matrix], arm: Matrix) -> Matrix:
+    """Velocity of a material point at an arm from the centre of its section, along the directors, 3×1, m/s."""
+    centre, rotation = rates
+    return centre + rotation @ arm
 
 
 def functions_of_sliding(model: Model) -> list[ca.Function]:

@@ -82,7 +82,7 @@ def test_steps_that_rub_are_the_simulators(tmp_path: Path) -> None:
     source = tmp_path / "robot" / "robot.c"
     gcc(*C99, "-Werror", "-fsyntax-only", source)
     if shutil.which("g++") is not None:
-        run("g++", "-x", "c++", "-std=c++20", "-Wall", "-Wconversion", "-Werror", "-fsyntax-only", source)
+        run("g++", "-x", "c++", "-std=c++20", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-fsyntax-only", source)
 
 
 @pytest.mark.slow

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import casadi as ca
@@ -41,6 +41,13 @@ FRICTION_FILES = ("contact_friction.c", "friction_sensitivity.c")
 
 ROD_FILES = ("struck_rods.h", "struck_rods.c")
 """Files of the folder ``c`` that such a library includes where rods may touch rods."""
+
+MEMBERS = (
+    *("points", "is_body", "elements", "nodes", "ends", "to_coefficients", "looks", "watches_base", "watches_tip"),
+    *("laid", "laid_count", "length", "force_unit", "radius_at_base", "radius_at_tip", "restitution", "stride"),
+    *("surface", "distance"),
+)
+"""Members of the record of a pair in C, in the order of ``gaps_in_motion.c.in``."""
 
 FEWEST_TOUCHES = 8
 """Least number of contacts of a rod with an obstacle for which arrays have room."""
@@ -217,13 +224,13 @@ def _tables(model: Model, faces: list[Facing]) -> Iterator[str]:
         fields["by_inputs"] = f"input_gradient_of_{number}" if "by_inputs" in own.in_steps else "0"
         if own.shares is not None:
             yield reals(f"SHARES_OF_{number}", own.shares)
-            fields["shares"] = f"SHARES_OF_{number}"
+        if any(each.shares is not None for each in points):
+            fields["shares"] = "0" if own.shares is None else f"SHARES_OF_{number}"
         records.append(record(fields))
     yield record_table("moving_points", "POINTS", "", records)
     obstacles = _obstacles(model)
     records = []
     for number, facing in enumerate(faces):
-        # C++ asks for members in the order of their declaration.
         fields = {"points": points.index(facing.points), "is_body": int(facing.of_body)}
         if isinstance(facing, RodFacing):
             yield from _rod_tables(facing, str(number))
@@ -244,10 +251,19 @@ def _tables(model: Model, faces: list[Facing]) -> Iterator[str]:
         if isinstance(facing, RodsFacing):
             yield from _rod_tables(facing.other, f"OTHER_{number}")
             other = _rod_fields(facing.other, f"OTHER_{number}") | {"length": _real(facing.other.length)}
-            yield f"static const facing OTHER_{number} = {record(other | _radii(facing.other))};"
+            yield f"static const facing OTHER_{number} = {record(_whole(model, other | _radii(facing.other)))};"
             fields["other"] = f"&OTHER_{number}"
-        records.append(record(fields))
+        records.append(record(_whole(model, fields)))
     yield record_table("facing", "FACING", "FACINGS", records)
+
+
+def _whole(model: Model, fields: Mapping[str, object]) -> dict[str, object]:
+    """Put the members of a pair in the order of their declaration, for which C++ asks, with zeros for missing ones."""
+    friction = {"coefficients": "{0, 0, 0}", "rubbing": "0", "rubbing_derivatives": "0"}
+    members = dict.fromkeys(MEMBERS, "0") | (friction if model.scene.rubs_exactly else {})
+    members |= {"other": "0"} if any(isinstance(own, RodsFacing) for own in struck_in_steps(model)) else {}
+    assert set(fields) <= set(members), "members are declared in gaps_in_motion.c.in"
+    return {name: fields.get(name, zero) for name, zero in members.items()}
 
 
 def _rod_tables(rod: RodFacing, name: str) -> Iterator[str]:

@@ -57,8 +57,11 @@ static void add_touch(int number, int slides, real place, workspace *work) {
     work->too_many = 1;
     return;
   }
-  const touch added = {.facing = number, .slides = slides, .place = place, .end_place = place, .places = {place, place}};
-  work->touches[work->touch_count++] = added;
+  touch *added = work->touches + work->touch_count++;
+  memset(added, 0, sizeof *added);
+  added->facing = number;
+  added->slides = slides;
+  added->place = added->end_place = added->places[0] = added->places[1] = place;
 }
 
 /* Adds the sections of a rod that lies at which it touches; returns their number where nothing is to be added. */
@@ -772,7 +775,8 @@ static solver_motion_status part_in_contact(const step_start *whole, int number,
     if (cut > 0) guess_stages(0, 1, &work->end, unknowns);
     if (!begin_stretch(&start, work->end.x, work->end.v, work)) return SOLVER_MOTION_NOT_SOLVED;
 #ifdef CONTACT_RUBS
-    turn_search search = {0};
+    turn_search search;
+    memset(&search, 0, sizeof search);
     note_starts(work->end.x, work->end.v, work->stretch_inputs, work->stretch_rates, work);
 #endif
     for (int tries = 0;; tries++) {
