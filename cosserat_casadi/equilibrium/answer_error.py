@@ -152,7 +152,7 @@ def with_notes(solution: Answer) -> Answer:
 
 
 FRICTION_OF_CONTACT = (
-    " Friction acts in motion and on paths: one equilibrium would be held in many shapes, and this one has none."
+    " Friction acts in motion and on paths. With friction, many shapes could be in equilibrium; this answer is without."
 )
 """A sentence on an equilibrium of rods that rub on obstacles, or on each other."""
 

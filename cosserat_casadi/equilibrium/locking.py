@@ -93,8 +93,8 @@ def motion(model: Model, x: FloatArray, inputs: FloatArray, step: FloatArray) ->
 
 
 NOT_KNOWN = (
-    "Whether constraints lock the modes that the scene fixes is not known: no equilibrium was found at the scene's own "
-    "inputs, and an equilibrium tells."
+    "Whether constraints lock the modes that the scene fixes is not known: the test needs an equilibrium, and none "
+    "was found at the scene's own inputs."
 )
 """Sentence without an equilibrium at which locking could be tested."""
 
@@ -104,8 +104,8 @@ def locking_sentence(locked: Sequence[str]) -> str:
     if not locked:
         return ""
     return (
-        f"The model is kinematically locked: its constraints leave its modes no motion that {', '.join(locked)} could "
-        "cause, and on more modes there is one; leave modes out of the scene, or give more."
+        f"The model is kinematically locked: its constraints leave its modes no motion by {', '.join(locked)}, though "
+        "more modes would have one: leave modes out of the scene, or give more."
     )
 
 

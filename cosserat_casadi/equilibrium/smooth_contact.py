@@ -53,8 +53,8 @@ def _too_deep(contacts: list[Contact]) -> str:
         return ""
     worst = contacts[int(np.argmax(depths))]
     return (
-        f" {worst.owner!r} is {max(depths):.3g} widths deep inside {worst.obstacle!r}, too deep to be contact: give "
-        "the contact more width or stiffness."
+        f" {worst.owner!r} is {max(depths):.3g} widths deep inside {worst.obstacle!r}, too deep for contact: give the "
+        "contact more width or stiffness."
     )
 
 

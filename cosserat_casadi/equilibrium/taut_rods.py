@@ -23,8 +23,8 @@ DEPENDENT = 1e-9
 """Share of the largest singular value below which a singular value counts as zero."""
 
 TAUT = (
-    " The supports hold a rod that cannot extend as far apart as it is long: it stays straight, and loads across it "
-    'have no equilibrium. Admit its extension (strain = "reissner"), or hold its ends nearer to each other.'
+    " The supports hold a rod that cannot extend at the distance of its length: it stays straight, and loads across "
+    'it have no equilibrium. Admit its extension (strain = "reissner"), or hold its ends nearer to each other.'
 )
 """Sentence in the message of a solve that fails for this reason."""
 

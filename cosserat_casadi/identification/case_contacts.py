@@ -277,7 +277,7 @@ class ContactMisfit(Misfit):
         for where, solution in self._told(state):
             sentence = marginal_contact(solution)
             if sentence:
-                sentences.append(f"{where}: {sentence} Intervals are of changes that leave contacts as they are.")
+                sentences.append(f"{where}: {sentence} Intervals hold for changes that leave contacts as they are.")
         return sentences
 
     def kinked(self, state: MisfitState, other: MisfitState) -> Flags:

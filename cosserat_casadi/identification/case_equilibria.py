@@ -32,7 +32,7 @@ STEPS = 12
 CONTRACTION = 0.05
 """Largest ratio of residuals after and before a step with an old Jacobian at which the Jacobian is kept."""
 
-NOT_FOLLOWED = "Its equilibrium could not be followed to where the search begins."
+NOT_FOLLOWED = "The search could not follow its equilibrium from the scene's numbers to the first guess."
 """Reason for a case without an equilibrium at the start of the search."""
 
 Flags = npt.NDArray[np.bool_]

@@ -256,8 +256,8 @@ def _unloaded_base(discrete: DiscreteScene, rod: str) -> NumericPose | Pose:
         SceneError: parameters move the carrier of the rod.
     """
     if discrete.carrier_moves(rod):
-        problem = "is bound to where the unloaded rod was, whose carrier parameters move"
-        remedy = "name no length, base or intrinsic strain of what carries this rod"
+        problem = "holds to the place of the unloaded rod, whose carrier the parameters move"
+        remedy = "name no length, base or intrinsic strain of the carriers of this rod"
         raise SceneError(Problem(f"a load on {rod!r}", problem, remedy))
     record = discrete.records[rod]
     written = written_pose(*written_base_pose(record))

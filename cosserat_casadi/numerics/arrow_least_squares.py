@@ -156,10 +156,12 @@ class Limits:
 class FitOutcome(Enum):
     """Outcome of a fit."""
 
-    CONVERGED = "No step lessens the misfit any more."
+    CONVERGED = "No step makes the misfit smaller."
     AT_KINK = "The misfit is least where its derivatives jump."
     MAX_ITERATIONS = "The iterations ran out before the misfit was least."
-    STALLED = "No step that can be followed lessens the misfit, though its gradient is not zero."
+    STALLED = (
+        "No step along which equilibria can be followed makes the misfit smaller, though its gradient is not zero."
+    )
 
 
 @dataclass(frozen=True)

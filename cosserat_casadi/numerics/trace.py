@@ -45,16 +45,16 @@ class PathOutcome(Enum):
     MAX_STEPS = "The path was not followed further: the steps ran out before factor 1."
     TURNED_BACK = "The path led back: its factor fell below -1."
     CLOSED = "The path is closed: it came back to its start without reaching factor 1."
-    NO_BIFURCATION = "No branch: the path reached its end before the bifurcation to leave at."
+    NO_BIFURCATION = "No branch: the path ended before the chosen bifurcation."
     NO_BRANCH = "No branch: none was found at the bifurcation."
-    CONTACT_UNSETTLED = "The path could not be followed further: no arrangement of contacts was found to go on with."
+    CONTACT_UNSETTLED = "The path could not be followed further: the search found no set of contacts to go on with."
     UNRESOLVED = (
         "The path of the discrete model reached its end, but the rod is not resolved to the tolerance asked for: "
         "fix more modes and nodes, or allow a larger tolerance."
     )
     PATH_VANISHED = (
-        "The rod cannot follow the path of the discrete model: it is bent so far that a tendon has no length left "
-        "along it."
+        "The rod cannot follow the path of the discrete model: it bends so far that a tendon has no length left along "
+        "it."
     )
     BEYOND_MATERIAL = (
         "The rod cannot follow the path of the discrete model: a strain, or the pressure in a chamber, is beyond "

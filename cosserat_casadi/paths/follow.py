@@ -41,7 +41,8 @@ from cosserat_casadi.paths.equilibrium_path import (
 from cosserat_casadi.paths.friction_path import FrictionPath, follow_friction_path
 
 FROM_NOWHERE = (
-    " Friction is counted from factor 0, where nothing rubs yet; no limit points and branches are looked for."
+    " Friction counts from factor 0 on, where nothing rubs yet. A path with friction looks for no limit points and "
+    "branches."
 )
 """A sentence on the beginning of a path with friction."""
 
@@ -149,7 +150,7 @@ def follow_path(
     """
     model = model.at()
     if first is not None and not isinstance(first, FrictionPath):
-        problem = "is a path with friction from whose end another one goes on"
+        problem = "is the end of a path with friction, which another path with friction goes on from"
         raise SceneError(Problem("first", problem, "leave it out: a path without friction does not depend on the way"))
     followed = _followed(model, name, value, values)
     if model.scene.touches_exactly:
@@ -160,7 +161,7 @@ def follow_path(
     left_out = left_out_on_paths(model.scene)
     if model.rubs_on_paths:
         if branch:
-            problem = "is of a path without friction: one that rubs goes on in increments"
+            problem = "needs a path without friction: a path with friction goes on in increments"
             raise SceneError(Problem("--branch", problem, "leave it out, or leave friction out"))
         followed = _followed(model.with_memory, name, value, values, first)
         rubbing = follow_friction_path(followed, settings or ArcSettings(), first=first, progress=progress)

@@ -36,7 +36,7 @@ class StoreChangedError(CosseratError):
     page = "sweeps"
 
     def __init__(self, path: Path) -> None:
-        super().__init__(f"{path} was changed while the sweep ran: the same command goes on with what is sound in it")
+        super().__init__(f"{path} was changed while the sweep ran: the same command goes on with its sound rows")
 
 
 class Memory:

@@ -69,7 +69,7 @@ def test_the_error_of_the_closest_pose_is_told() -> None:
     """Far outside of what the rod reaches, on a model that is not the rod either."""
     found = inverse(build(wanted((0.9, 0.0, 0.9), modes=1, nodes=4, tolerance=1e-6)), starts=0)
     assert not found.met
-    assert "The targets are not all met" in found.solution.message
+    assert "Not all targets are met" in found.solution.message
     assert "is above the tolerance of 1e-06; the scene fixes its modes" in found.solution.message
 
 

@@ -33,17 +33,17 @@ UNSTABLE = (
 def inverse(
     scene: SceneFile,
     settings: Settings = None,
-    output: Annotated[Path | None, typer.Option(help="Write the result at the inputs found (JSON) here.")] = None,
+    output: Annotated[Path | None, typer.Option(help="Write the resulting equilibrium (JSON) here.")] = None,
     table: Annotated[
         Path | None,
-        typer.Option(help="Targets one after the other: CSV with x, y, z and qw, qx, qy, qz; --output is CSV then."),
+        typer.Option(help="A target in each row: CSV with x, y, z and qw, qx, qy, qz; --output is CSV then."),
     ] = None,
     plot: Annotated[Path | None, typer.Option(help="Draw a figure here: .png, .pdf or .svg.")] = None,
     stable: Annotated[
         bool, typer.Option("--stable", help="Find a stable equilibrium: from an unstable one let the rod settle.")
     ] = False,
     unstable: Annotated[
-        bool, typer.Option("--unstable", help="Accept an unstable equilibrium: exit code 0 where the targets are met.")
+        bool, typer.Option("--unstable", help="Accept an unstable equilibrium: exit code 0 if the targets are met.")
     ] = False,
 ) -> None:
     """Find inputs that bring rods and bodies to the targets of a scene.
@@ -79,9 +79,9 @@ def _check_table(output: Path | None, plot: Path | None) -> None:
     """Refuse options that do not apply to a table, and missing ones that it needs."""
     problems = []
     if output is None:
-        problems.append(Problem("--output", "missing", "name the CSV file for what is found for the table"))
+        problems.append(Problem("--output", "missing", "name the CSV file for the results of the table"))
     if plot is not None:
-        problems.append(Problem("--plot", "stands beside --table", "draw one row: leave out --table"))
+        problems.append(Problem("--plot", "stands beside --table", "a figure shows one target: leave out --table"))
     refuse(problems)
 
 
