@@ -216,7 +216,7 @@ class Solution(Equilibrium[Model]):
         path. It is computed from the Jacobian on first use.
         """
         # The module imports this one.
-        from cosserat_casadi.equilibrium.layer_error import layer_error
+        from cosserat_casadi.equilibrium.answer_error import layer_error
 
         return layer_error(self)
 

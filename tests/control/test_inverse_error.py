@@ -14,7 +14,7 @@ from numpy.testing import assert_allclose
 from rich.console import Console
 
 from cosserat_casadi import Inverse, Scene, build, inverse, scene_from_dict, solve
-from cosserat_casadi.cli.reports.inverse_table import print_inverse_table
+from cosserat_casadi.cli.commands.inverse import print_inverse_table
 from cosserat_casadi.cli.reports.solution import print_inverse
 from cosserat_casadi.control.inverse_accuracy import inverse_rows
 from cosserat_casadi.control.target_table import TargetTable, read_targets
