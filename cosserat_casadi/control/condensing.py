@@ -122,7 +122,8 @@ class Condensing:
         solved = -np.linalg.solve(by_unknowns, np.concatenate(right, axis=2))
         moving = inputs.shape[1]
         alone, with_state, with_inputs, with_rate = np.split(solved, [1, 1 + size, 1 + size + moving], axis=2)
-        gaps = guess.states[:-1] @ self._transition.T + guess.unknowns @ self._drive.T - guess.states[1:]
+        reached = guess.states[:-1] @ self._transition.T + guess.unknowns @ self._drive.T
+        gaps = reached - guess.states[1:]
 
         states_by_rates = np.zeros((self._stages + 1, size, self._stages * count))
         states_by_inputs = np.zeros((self._stages + 1, size, moving))

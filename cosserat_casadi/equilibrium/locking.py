@@ -87,9 +87,10 @@ def residual_by_inputs(model: Model, x: FloatArray, inputs: FloatArray) -> Float
 
 def motion(model: Model, x: FloatArray, inputs: FloatArray, step: FloatArray) -> float:
     """Motion of the watched poses by a step of the unknowns, to first order: over the length, or in quaternions."""
-    share = STEP / max(float(np.abs(step).max(initial=0.0)), STEP)
-    change = column(model.watched(x + share * step, inputs)) - column(model.watched(x, inputs))
-    return float(np.abs(change).max(initial=0.0)) / share
+    largest = float(np.abs(step).max(initial=0.0))
+    share = STEP / max(largest, STEP)
+    before, after = (column(model.watched(unknowns, inputs)) for unknowns in (x, x + share * step))
+    return float(np.abs(after - before).max(initial=0.0)) / share
 
 
 NOT_KNOWN = (

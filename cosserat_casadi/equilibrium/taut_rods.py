@@ -53,6 +53,8 @@ def held_taut(model: Model, inputs: FloatArray) -> bool:
 
 
 def _is_straight(model: Model, x: FloatArray, inputs: FloatArray, rod: str) -> bool:
-    positions = np.hstack([model.shape[rod](x, inputs, X)[0].full() for X in np.linspace(0.0, 1.0, SECTIONS)])
-    along = np.linalg.norm(np.diff(positions), axis=0).sum()
-    return bool(np.linalg.norm(positions[:, -1] - positions[:, 0]) >= (1.0 - STRAIGHT) * along)
+    sections = np.linspace(0.0, 1.0, SECTIONS)
+    positions = np.hstack([model.shape[rod](x, inputs, X)[0].full() for X in sections])
+    length = np.linalg.norm(np.diff(positions), axis=0).sum()
+    chord = np.linalg.norm(positions[:, -1] - positions[:, 0])
+    return bool(chord >= (1.0 - STRAIGHT) * length)

@@ -311,7 +311,8 @@ class Search:
 
         def costs(steps: FloatArray) -> FloatArray:
             held = np.zeros((*steps.shape[:2], len(self.indices) - self.own))
-            return self.library.costs(table, inputs, found.x[rows], known, np.concatenate([steps, held], axis=2))
+            changes = np.concatenate([steps, held], axis=2)
+            return self.library.costs(table, inputs, found.x[rows], known, changes)
 
         return sampled(costs, found.cost[rows], covariance, draws)
 

@@ -287,8 +287,9 @@ class ContactMisfit(Misfit):
 
     def at_kink(self, state: MisfitState, other: MisfitState) -> list[str]:
         """Contacts of only one of two states, in words."""
-        triples = zip(self.cases, _settled(state.point), _settled(other.point), strict=True)
-        return [f"{own.where}: {case.difference(beside)}" for own, case, beside in triples if case.difference(beside)]
+        pairs = zip(_settled(state.point), _settled(other.point), strict=True)
+        differences = [case.difference(beside) for case, beside in pairs]
+        return [f"{own.where}: {words}" for own, words in zip(self.cases, differences, strict=True) if words]
 
     def _told(self, state: MisfitState) -> Iterator[tuple[str, Solution]]:
         """Each case with its equilibrium."""

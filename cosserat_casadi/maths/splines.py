@@ -260,7 +260,8 @@ class HermiteCurve:
         """Integral of the curve from its first point to each, shape (n,)."""
         width = np.diff(self.abscissae)
         powers = np.column_stack([width, width**2 / 2, width**3 / 3, width**4 / 4])
-        return np.concatenate([[0.0], np.cumsum(np.sum(self._polynomials * powers, axis=1))])
+        of_intervals = np.sum(self._polynomials * powers, axis=1)
+        return np.concatenate([[0.0], np.cumsum(of_intervals)])
 
     @cached_property
     def _integral_at_zero(self) -> float:

@@ -153,7 +153,8 @@ def solved_poses(solution: Any) -> FloatArray:
     """Positions and quaternions of the tips and the bodies of a solution, shape (7 tips and bodies,)."""
     tips = [solution.tip(name) for name in solution.model.lengths]
     bodies = [solution.body(body.name) for body in solution.model.scene.bodies]
-    return np.concatenate([np.ravel(part) for pose in (*tips, *bodies) for part in (pose.position, pose.quaternion)])
+    poses = [np.concatenate([pose.position, pose.quaternion]) for pose in (*tips, *bodies)]
+    return np.concatenate(poses)
 
 
 def _contact_numbers(solution: Solution, name: str, obstacle: str, *, of_body: bool) -> list[float]:

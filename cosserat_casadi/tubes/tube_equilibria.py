@@ -99,7 +99,7 @@ class TubeEquilibria(Result):
                 "to one: no single one is missing."
             )
         if not self.solutions:
-            return "The search ended before it settled and found no equilibrium, though one exists."
+            return "No equilibrium was found, though one exists: the search ended before it settled."
         return (
             "Equilibria were found, but others may be missing: the search ended before it settled with determinants "
             "whose signs add up to one, within tolerance."
@@ -215,8 +215,9 @@ def _differ(one: TubeSolution, other: TubeSolution) -> bool:
     """Whether two equilibria under loads differ; a quaternion and its opposite are one frame."""
     size = one.robot.size
     sign = np.sign(one.x[size:] @ other.x[size:])
-    change = np.concatenate([one.angles - other.angles, one.x[size:] - sign * other.x[size:]])
-    return bool(np.abs(change).max() > SAME)
+    turned = np.abs(one.angles - other.angles)
+    others = np.abs(one.x[size:] - sign * other.x[size:])
+    return bool(np.concatenate([turned, others]).max() > SAME)
 
 
 def _without_loads(model: TubeModel, at: FloatArray) -> TubeEquilibria:
