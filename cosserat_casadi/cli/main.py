@@ -226,7 +226,7 @@ def _print_refusal(console: Console, error: SceneError | ExportError) -> None:
     count = counted(len(error.problems), "problem")
     console.print(f"[bold red]Refused:[/] {count}.")
     for problem in error.problems:
-        # Without wrapping, so that paths can be copied.
+        # Lines do not wrap, so that paths can be copied.
         console.print(f"  {escape(str(problem))}", soft_wrap=True)
 
 

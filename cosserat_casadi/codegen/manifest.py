@@ -244,7 +244,7 @@ def described_unknowns(model: Model) -> list[tuple[dict[str, Any], str]]:
             words = f"{basis} coefficients of {strain} of rod {rod}, element after element"
             add(rod, {"strain": strain}, first, count, words)
     supports = {support.rod: support.kind for support in model.scene.supports}
-    # Every entry is one of a rod: that of bodies without rods is the first.
+    # Every entry has a rod: bodies without rods get the first one.
     first_rod = next(iter(discrete.rods))
     for placed in discrete.constraints:
         rod = placed.rod or first_rod

@@ -133,7 +133,7 @@ class Condensing:
         for k in range(self._stages):
             here = slice(k * count, (k + 1) * count)
             unknowns_by_rates[k] = with_state[k] @ states_by_rates[k]
-            # Inputs at the beginning of a stage are the sum of what all rates before it have made of them.
+            # Inputs at the beginning of a stage are the sum of their changes by all earlier rates.
             unknowns_by_rates[k, :, : k * count] += self._stage.duration * np.tile(with_inputs[k][:, self._steered], k)
             unknowns_by_rates[k, :, here] += with_rate[k]
             unknowns_shift[k] = alone[k, :, 0] + with_state[k] @ states_shift[k]

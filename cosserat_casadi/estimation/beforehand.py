@@ -91,7 +91,7 @@ def check_ranges(model: Model, layout: UnknownLayout) -> None:
         if not entry.of_input:
             lower, upper, _, _ = entry.limits()
             ends = zip([*entry.indices, *entry.indices], [*lower, *upper], strict=True)
-            # What all rows share has a prior, and need have no bounds.
+            # Unknowns that all rows share have a prior, and need no bounds.
             sides += [(index, end) for index, end in ends if np.isfinite(end)]
     corners = [[side] for side in sides]
     corners += [list(pair) for pair in combinations(sides, 2) if pair[0][0] != pair[1][0]]
@@ -128,10 +128,10 @@ def knowledge_of(layout: UnknownLayout) -> Knowledge:
     """Collect the prior knowledge of the unknowns of each row: bounds, priors, typical sizes."""
     limits = layout.own_limits
     typical = np.concatenate([entry.scales for entry in layout.own])
-    # What is known beforehand says best what is much and what is little.
+    # Priors give the best scale of an unknown.
     deviations = 1.0 / np.where(limits.weight > 0.0, limits.weight, 1.0)
     sizes = np.where(limits.weight > 0.0, deviations, typical)
-    # Searches of rows step as far as they see fit: bounds of steps by ratio are for what all cases share.
+    # Searches of rows have no bound on steps: bounds by ratio are for unknowns that all cases share.
     return Knowledge(replace(limits, ratios=np.zeros_like(limits.ratios)), sizes)
 
 

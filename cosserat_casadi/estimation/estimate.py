@@ -410,13 +410,13 @@ def _checked(result: Estimate, report: StageProgress) -> Iterator[tuple[int, flo
     found = np.flatnonzero(result.found)
     if not found.size:
         return
-    # The cases that differ most from the unloaded rod are those that the discretisation serves worst.
+    # The discretisation is worst for the cases that differ most from the unloaded rod.
     bent = np.linalg.norm(result.x[found], axis=1)
     rows = found[np.argsort(-bent, kind="stable")[:CHECKED]].tolist()
     for done, row in enumerate(rows):
         report("Checking rows", done, len(rows))
         model = result.model
-        # From the estimate: the unloaded rod may lead to another equilibrium, whose error says nothing of this one.
+        # The solve starts from the estimate: the unloaded rod may lead to another equilibrium with another error.
         start = None if model.scene.touches_exactly else result.x[row]
         parameters = result.parameters[row] if model.parameters.size else None
         solution = solve(model, result.inputs[row], parameters=parameters, start=start)

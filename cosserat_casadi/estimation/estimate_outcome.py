@@ -183,7 +183,7 @@ def _unseen(of_data: FloatArray, has_prior: npt.NDArray[np.bool_], labels: Seque
     """Directions of little information, in words, with the number of cases that have them."""
     eigenvalues, vectors = np.linalg.eigh(of_data)
     least = BLIND * eigenvalues[:, -1:]
-    # Where every unknown has a prior, what hardly tightens it is not seen either.
+    # If every unknown has a prior, directions that data hardly tighten are not seen either.
     limits = np.maximum(least, HARDLY_SEEN) if has_prior.all() else np.broadcast_to(least, (len(least), 1))
     counted: Counter[str] = Counter()
     for case, column in zip(*np.nonzero(eigenvalues <= limits), strict=True):

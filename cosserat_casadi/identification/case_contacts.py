@@ -230,7 +230,7 @@ class ContactEquilibria(Equilibria):
         model = self.model
         own = model.scene
         if model.parameters.moving:
-            # What parameters move keeps its order among contacts: it starts where it is now.
+            # Parameters move places only within their order among contacts: the search starts at the present places.
             own = scene.model_copy(update={"parameters": own.parameters})
         return ContactEquations(own, model.pack(), Grids(model.discretisation), state, model.parameters.pack())
 

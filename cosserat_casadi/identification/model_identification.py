@@ -144,7 +144,7 @@ def identify(
         try:
             fitted = found.fitted_scene(completed)
         except SceneError:
-            # What was found is told all the same; whoever wants the scene is told why there is none.
+            # The result is reported all the same; a request for the scene gets the reason why there is none.
             break
         judged = with_discretisation(fitted, draft, _with_identified_inputs(cases, found), tell)
         same = judged.scene.accuracy == choice.scene.accuracy

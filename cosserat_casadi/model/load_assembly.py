@@ -215,7 +215,7 @@ def site_of(discrete: DiscreteScene, rod: str, load: scenes.LoadRecord) -> Site:
     else:
         nodes = grid.nodes_in(*member.span(load)) if at is None else np.array([grid.node_at(at)])
         X, interpolation = grid.nodes_at(nodes), np.eye(grid.size)[nodes]
-    # A function, since few loads ask for the unloaded poses, which need those of all carriers.
+    # The poses are a function, since few loads need them and they take the poses of all carriers.
     poses = partial(unloaded_poses, discrete, rod, interpolation)
     return Site(discrete_rod.properties, X, poses)
 

@@ -135,7 +135,7 @@ def _problems(discrete: DiscreteScene) -> Iterator[Problem]:
             yield from member.faults(obstacle, float(radii.max()))
             held = in_world
             if obstacle.body is not None:
-                # The pose of the body is unknown before the scene is solved, and so are the poses of what it carries.
+                # The poses of the body, and of the rods that it carries, are unknown before the scene is solved.
                 held = _held_by(discrete.scene, obstacle.body, properties)
             for how, (position, radius) in held.items():
                 depth = radius - float(member.function(obstacle)(position)[0])

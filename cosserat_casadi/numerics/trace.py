@@ -156,7 +156,7 @@ def extend(curve: Curve, traced: Trace, step: float, leave_at: int, guard: Guard
     if events is None and step > SEPARATE:
         return _halved(traced, step, limits.shortest)
 
-    # A step may pass the load factor 1; what lies beyond is not asked for.
+    # A step may pass the load factor 1; the path beyond does not count.
     end = _end(arc)
     if guard is not None:
         guarded = guard(arc, end)
@@ -167,7 +167,7 @@ def extend(curve: Curve, traced: Trace, step: float, leave_at: int, guard: Guard
     passed = [event for event in events or [] if event.point.length <= end.length]
     departure = _departure(traced, passed, abs(leave_at))
     if departure is not None:
-        # What lies beyond the bifurcation on this curve is none of the branch's.
+        # The curve beyond the bifurcation does not belong to the branch.
         _leave(curve, traced, passed[: departure + 1], 1 if leave_at > 0 else -1)
         return limits.first
     traced.points.append(end)

@@ -72,7 +72,7 @@ class SupportRecord(Entry):
         support = sound(cls, given)
         if rod is None or support is None:
             return
-        # The base of a carried or free rod is an unknown: the model finds out what its tip reaches.
+        # The base of a carried or free rod is an unknown: the model checks the reach of its tip.
         if rod.base.rod is not None or rod.base.free:
             return
         for fault in out_of_reach(rod, support.position, support.orientation):

@@ -77,7 +77,7 @@ class RowModel:
                 start=near,
                 estimate_error=self.estimate_errors,
             )
-            # With other parameters obstacles may be elsewhere, and the way between the shapes may lead through them.
+            # Other parameters may move obstacles, so that the way between the shapes leads through them.
             if model.scene.touches_exactly and solution.converged and not p.size:
                 near = solution
             yield solution

@@ -70,7 +70,7 @@ def inverse(
         _inverse_of_table(scene, settings, table, output, stable, unstable)
         return
     with solve_display("Finding inputs") as display:
-        # Read inside: building the problem is part of what the bar shows, and may be interrupted.
+        # The scene is read inside: the bar covers the build of the problem, and an interrupt may come in it.
         given_scene = read_scene(scene, tuple(settings or ()))
         solved = control.inverse(given_scene, stable=stable, report=display.show_stage)
     print_inverse(Console(), solved, write_all(solved, output, plot))

@@ -82,7 +82,7 @@ def solve(
         return
     solution = solve_with_progress(read, stable=stable)
     _give(solution, output, plot, as_json=as_json)
-    # On standard error, so that standard output holds only JSON; None is no verdict.
+    # The warning goes to standard error, so that standard output holds only JSON; None is no verdict.
     if solution.converged and solution.stable is False and not stable:
         print_warnings(Console(stderr=True), [UNSTABLE])
     # If stability is undefined, --stable fails.

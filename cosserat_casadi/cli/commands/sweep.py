@@ -100,7 +100,7 @@ def sweep(
     with collect_problems(problems):
         table = _asked_table(over, ranges or [], output, sobol=sobol is not None)
     if swept_scene is None or table is None:
-        # Without scene and table only the output is left to check.
+        # Only the output can be checked without scene and table.
         problems.extend(output_problems(output, None))
     else:
         with collect_problems(problems):
