@@ -38,7 +38,7 @@ class Verified:
             known = self.error_estimate != UNKNOWN
             text += f" largest estimated error {self.error_estimate:.1e}." if known else " their error is not known."
         if self.within is False:
-            text += " The error exceeds the tolerance there."
+            text += " The discretisation does not keep the tolerance there."
         if self.locked:
             text += f" {locking_sentence(self.locked)}"
         if self.without_equilibrium:

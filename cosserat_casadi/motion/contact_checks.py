@@ -144,7 +144,7 @@ def laid_down(history: History) -> list[str]:
             times.setdefault((event.owner, event.obstacle), []).append(event.time)
     return [
         f"Contacts of {owner!r} with {obstacle!r} changed over and over within almost no time ({len(found)} times, "
-        f"first at t = {found[0]:.6g} s): the motion goes on with the rod at rest on it there; the true motion may "
+        f"first at t = {found[0]:.6g} s): the motion goes on with the rod lying on it there; the true motion may "
         "differ."
         for (owner, obstacle), found in times.items()
     ]

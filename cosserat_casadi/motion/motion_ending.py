@@ -96,7 +96,7 @@ def message_of(history: History, outcome: MotionOutcome) -> str:
     reached = f"t = {history.end.time:.6g} s, with a step of {history.next_size:.3g} s"
     if outcome is MotionOutcome.SNAPPED:
         return f"{outcome.value} Reached: {reached}; the cable or joint is {', '.join(snapping(history))}."
-    violent = f"{outcome.value} Reached: {reached}; the fastest motion there is that of {most_violent(history)}."
+    violent = f"{outcome.value} Reached: {reached}; the largest acceleration there is that of {most_violent(history)}."
     return violent + whirled(history)
 
 

@@ -169,7 +169,7 @@ WAVES = (
 
 
 CHATTERS = (
-    "The rod strikes over and over: {before} times on {fewer} modes, {after} times on {more}, and the paths differ by "
+    "Parts strike over and over: {before} times on {fewer} modes, {after} times on {more}, and the paths differ by "
     "{distance:.2g} of the length. The modes that the tolerance needs would give about {foreseen:.0f} impacts. Give "
     "the obstacle a width, the rod more damping, or a larger tolerance. Modes in accuracy.modes stay fixed."
 )

@@ -41,8 +41,7 @@ from cosserat_casadi.paths.equilibrium_path import (
 from cosserat_casadi.paths.friction_path import FrictionPath, follow_friction_path
 
 FROM_NOWHERE = (
-    " Friction counts from factor 0 on, where nothing rubs yet. A path with friction looks for no limit points and "
-    "branches."
+    " Friction is counted from factor 0, where nothing rubs yet; no limit points and branches are looked for."
 )
 """A sentence on the beginning of a path with friction."""
 
@@ -150,7 +149,7 @@ def follow_path(
     """
     model = model.at()
     if first is not None and not isinstance(first, FrictionPath):
-        problem = "is the end of a path with friction, which another path with friction goes on from"
+        problem = "is a path with friction from whose end another one goes on"
         raise SceneError(Problem("first", problem, "leave it out: a path without friction does not depend on the way"))
     followed = _followed(model, name, value, values)
     if model.scene.touches_exactly:
@@ -161,7 +160,7 @@ def follow_path(
     left_out = left_out_on_paths(model.scene)
     if model.rubs_on_paths:
         if branch:
-            problem = "needs a path without friction: a path with friction goes on in increments"
+            problem = "is of a path without friction: one that rubs goes on in increments"
             raise SceneError(Problem("--branch", problem, "leave it out, or leave friction out"))
         followed = _followed(model.with_memory, name, value, values, first)
         rubbing = follow_friction_path(followed, settings or ArcSettings(), first=first, progress=progress)

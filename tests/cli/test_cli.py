@@ -798,7 +798,9 @@ def test_an_export_that_misses_the_tolerance_is_written_and_says_so(wire: Path) 
     assert verified["within_tolerance"] is False
     assert verified["error_estimate"] > 1e-6
     for file in ("README.md", "wire.h"):
-        assert "The error exceeds the tolerance there." in " ".join((wire / "c" / file).read_text().split())
+        assert "The discretisation does not keep the tolerance there." in " ".join(
+            (wire / "c" / file).read_text().split()
+        )
     assert read_scene(wire / "c" / "scene.toml").accuracy.chosen_for is None
 
 

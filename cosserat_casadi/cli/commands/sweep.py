@@ -42,7 +42,7 @@ def sweep(
         typer.Option(
             "--range",
             metavar="COLUMN=FROM:TO:COUNT",
-            help="Values of an input or a parameter to solve for; several ranges make a grid.",
+            help="Values of an input or a parameter; several ranges make a grid, also with the rows of --over.",
         ),
     ] = None,
     scheduler: Annotated[

@@ -112,8 +112,8 @@ class _Met:
             problems.append(Problem(f"rods.{rod}", problem, "give the obstacle a width, m, or move it off the base"))
         for rod, obstacle, X in split:
             problem = (
-                f"what acts at {X:g} of {rod!r} is inside the line along which it touches {obstacle!r}: C has no such "
-                "contact"
+                f"a load or joint at {X:g} of {rod!r} is inside the line along which it touches {obstacle!r}: C has no "
+                "such contact"
             )
             problems.append(Problem("loads", problem, "give each obstacle a width, m, for a contact that is smooth"))
         count = len(self.states)
