@@ -72,7 +72,7 @@ static real resolution_index(const real *x, const real *inputs, workspace *work)
   return index;
 }
 
-/* Nothing in the scene has a limit of its strains. */
+/* The scene has no limit of strains. */
 static solver_status within_limits(solver_status end, const real *x, const real *inputs, workspace *work) {
   (void)x;
   (void)inputs;

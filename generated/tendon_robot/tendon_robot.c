@@ -72,8 +72,8 @@ static real resolution_index(const real *x, const real *inputs, workspace *work)
   return index;
 }
 
-/* The first limit that is passed, those of paths of tendons first, then those of planes of rods, then those of materials
-   and chambers; else -1. */
+/* The first passed limit, in the order: paths of tendons, planes of rods, materials and chambers; -1 if none is
+   passed. */
 static int first_beyond(const real *x, const real *inputs, workspace *work) {
   real margins[4];
   ARGUMENTS(tendon_robot_k_strain_margins, x, inputs);
@@ -85,7 +85,7 @@ static int first_beyond(const real *x, const real *inputs, workspace *work) {
   return -1;
 }
 
-/* The end of a solve in view of the limits: paths of tendons have length left, joints are in the plane of their rods,
+/* Checks the limits at the end of a solve: paths of tendons have length left, joints are in the plane of their rods,
    materials and chambers are within their laws. */
 static solver_status within_limits(solver_status end, const real *x, const real *inputs, workspace *work) {
   if (end != SOLVER_CONVERGED && end != SOLVER_LOAD_STALLED) return end;
