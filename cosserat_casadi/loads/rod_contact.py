@@ -77,8 +77,7 @@ def coefficient(width: Matrix | float, stiffness: Matrix | float, touching: Matr
         touching: distance D of the centres of touching sections, m.
     """
     square = (touching + width) ** 2 - touching**2
-    denominator = 32 * square**1.5 * (5 * touching**2 - square)
-    return 5 * stiffness / denominator
+    return 5 * stiffness / (32 * square**1.5 * (5 * touching**2 - square))
 
 
 @dataclass(frozen=True)
@@ -376,18 +375,16 @@ def _ball() -> ca.Function:
     places, data = ca.SX.sym("places", 3, PANEL), ca.SX.sym("data", DATA, PANEL)
     centre = ca.sum2(places) / PANEL
     distances = ca.sqrt(ca.sum1((places - ca.repmat(centre, 1, PANEL)) ** 2))
-    radius = ca.mmax(distances + data[1, :])
-    ball = ca.vertcat(centre, radius, data[2, 0], data[2, -1])
+    ball = ca.vertcat(centre, ca.mmax(distances + data[1, :]), data[2, 0], data[2, -1])
     return ca.Function("ball", [places, data], [ball])
 
 
 def _ball_about(balls: Matrix) -> Matrix:
     """A ball about balls, 6×k: its centre, its radius, and its ends along the rod, 6×1, m."""
-    centres, radii = balls[:3, :], balls[3, :]
     count = balls.shape[1]
-    centre = ca.sum2(centres) / count
-    distances = ca.sqrt(ca.sum1((centres - ca.repmat(centre, 1, count)) ** 2))
-    return ca.vertcat(centre, ca.mmax(distances + radii), balls[4, 0], balls[5, -1])
+    centre = ca.sum2(balls[:3, :]) / count
+    distances = ca.sqrt(ca.sum1((balls[:3, :] - ca.repmat(centre, 1, count)) ** 2))
+    return ca.vertcat(centre, ca.mmax(distances + balls[3, :]), balls[4, 0], balls[5, -1])
 
 
 @cache
@@ -435,8 +432,7 @@ def _meet(first: Matrix, second: Matrix, law: Matrix) -> Matrix:
     """Whether sections in balls, 6×k each, may push each other, 1×k."""
     squared_distance = ca.sum1((first[:3, :] - second[:3, :]) ** 2)
     reach = first[3, :] + second[3, :] + law[0]
-    is_far_along = second[5, :] - first[4, :] >= law[2]
-    meet: Matrix = (squared_distance < reach**2) * is_far_along
+    meet: Matrix = (squared_distance < reach**2) * (second[5, :] - first[4, :] >= law[2])
     return meet
 
 
@@ -570,11 +566,8 @@ def _owners(function: ca.Function) -> list[str]:
 
 def _joined(results: str, parts: Sequence[Sequence[Matrix]]) -> list[Matrix]:
     """Join results for parts of the first rod: results for the second rod are summed, others put side by side."""
-    joined = []
-    for owner, of_parts in zip(results, zip(*parts, strict=True), strict=True):
-        is_summed = owner == "s"
-        joined.append(sum(of_parts[1:], of_parts[0]) if is_summed else ca.horzcat(*of_parts))
-    return joined
+    fields = zip(results, zip(*parts, strict=True), strict=True)
+    return [sum(of_part[1:], of_part[0]) if of == "s" else ca.horzcat(*of_part) for of, of_part in fields]
 
 
 def _over_panels(
@@ -659,20 +652,16 @@ LAW_ARGUMENT = ARGUMENTS.index("law")
 def _for_all_pairs(arguments: Sequence[Matrix]) -> list[Matrix]:
     """Positions, data and law of two panels for all pairs of their sections; the first index runs faster."""
     first, second = arguments[:2], arguments[2:4]
-    count = PANEL**2
     of_first = [ca.repmat(field, 1, PANEL) for field in first]
-    of_second = [ca.reshape(ca.repmat(field, PANEL, 1), field.shape[0], count) for field in second]
-    law = ca.repmat(arguments[LAW_ARGUMENT], 1, count)
-    return [*of_first, *of_second, law]
+    of_second = [ca.reshape(ca.repmat(field, PANEL, 1), field.shape[0], PANEL**2) for field in second]
+    return [*of_first, *of_second, ca.repmat(arguments[LAW_ARGUMENT], 1, PANEL**2)]
 
 
 @cache
 def _across(first: int, second: int, sections: int) -> ca.Function:
     """(derivatives by m coordinates and the positions of sections, m×3S, motion of these, 3n×S) ↦ m×n."""
-    mixed = ca.MX.sym("mixed", second, 3 * sections)
-    motion = ca.MX.sym("motion", 3 * first, sections)
-    by_coordinates = ca.reshape(motion, first, 3 * sections)
-    return ca.Function("across", [mixed, motion], [mixed @ by_coordinates.T])
+    mixed, motion = ca.MX.sym("mixed", second, 3 * sections), ca.MX.sym("motion", 3 * first, sections)
+    return ca.Function("across", [mixed, motion], [mixed @ ca.reshape(motion, first, 3 * sections).T])
 
 
 @cache

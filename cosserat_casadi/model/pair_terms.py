@@ -233,15 +233,11 @@ class PairTerms:
 
     def wrenches(self, rod: str) -> list[LineWrench]:
         """The push and the friction on a rod, base axes; nothing for a rod outside of the pair."""
-        wrenches = []
-        for side, gradient in zip(self.sides, self._gradients, strict=True):
-            if side.rod == rod:
-                wrenches.append(side.wrench(-self._factor * gradient))
-        for side, friction in zip(self.sides, self.frictions, strict=False):
-            if side.rod == rod:
-                scaled = self._factor * friction
-                wrenches.append(side.wrench(scaled[:3, :], scaled[3:, :]))
-        return wrenches
+        pushes = zip(self.sides, self._gradients, strict=True)
+        loads = [side.wrench(-self._factor * gradient) for side, gradient in pushes if side.rod == rod]
+        rubs = zip(self.sides, self.frictions, strict=False)
+        frictions = [(side, self._factor * friction) for side, friction in rubs if side.rod == rod]
+        return loads + [side.wrench(friction[:3, :], friction[3:, :]) for side, friction in frictions]
 
     @property
     def rubs(self) -> bool:

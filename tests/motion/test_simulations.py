@@ -212,7 +212,7 @@ def test_scene_without_equilibrium_has_no_start() -> None:
     assert motion.message.startswith(MotionOutcome.NO_START.value)
     assert motion.times.shape == (0,)
     assert motion.tip().position.shape == (0, 3)
-    with pytest.raises(ValueError, match="not started"):
+    with pytest.raises(ValueError, match="did not start"):
         motion.at(0.0)
 
 
