@@ -185,7 +185,7 @@ class ContactEquilibrium:
         beside = np.concatenate([-distances, distances])
         ends = np.array([end for touch in self.state.along(rod) for end in touch.ends], dtype=float)
         X = (ends[:, None] + beside).ravel()
-        return X[(X > 0.0) & (X < 1.0)]
+        return np.asarray(X[(X > 0.0) & (X < 1.0)])
 
     def unmet(self) -> float:
         """Bound on the error of poses, places and forces because contacts hold only to a tolerance.
