@@ -41,7 +41,7 @@ def solve_contact_scene(solver: SceneSolver, transport: str) -> Solution:
     coarse: Solution | None = None
     failures = 0
     for modes, nodes in _levels(scene):
-        # Intervals that a scene fixes are those of its answer.
+        # The answer keeps the intervals that a scene fixes.
         turn = 0.0 if scene.accuracy.fixed else solver.unloaded_turn
         if coarse is not None:
             turn = max(turn, largest_turn(coarse))

@@ -76,7 +76,7 @@ def with_accuracy(scene: scenes.Scene, **changes: object) -> scenes.Scene:
     entries = tables.get("accuracy", {})
     entries = {**entries, **changes}
     tables["accuracy"] = {key: value for key, value in entries.items() if value is not None}
-    # Read again, so that what the scene format refuses is refused here too.
+    # The scene is read again, so that the rules of the format apply here too.
     return scenes.scene_from_dict(tables)
 
 

@@ -253,7 +253,7 @@ class Preview:
 
     def _system(self, discrete: DiscreteScene, x: FloatArray | Matrix) -> System:
         """The equations of a discrete scene at unknowns x and the inputs of the reference."""
-        # With numbers as arguments CasADi evaluates while it builds, so that no function is built for one evaluation.
+        # With numbers as arguments CasADi evaluates while it builds: one evaluation needs no function.
         return System(discrete, Arguments(ca.DM(x), ca.DM(self.reference.inputs)))
 
     @cached_property

@@ -38,12 +38,12 @@ class Verified:
             known = self.error_estimate != UNKNOWN
             text += f" largest estimated error {self.error_estimate:.1e}." if known else " their error is not known."
         if self.within is False:
-            text += " The tolerance is not kept there."
+            text += " The discretisation does not keep the tolerance there."
         if self.locked:
             text += f" {locking_sentence(self.locked)}"
         if self.without_equilibrium:
             text += f" No equilibrium was found at {self.without_equilibrium} of these points."
-        return f"{text} Inputs beyond these ranges need it chosen anew."
+        return f"{text} For inputs beyond these ranges choose the discretisation anew."
 
     def plain(self) -> dict[str, Any]:
         """Ranges, solves and errors as plain data, for a manifest."""

@@ -100,10 +100,10 @@ def print_effects(console: Console, rods: Sequence[str], whole: Times | str, par
     """
     igm = f"IGM of {escape(rods[0])} alone" if len(rods) > 1 else "IGM"
     if isinstance(whole, str):
-        console.print(f"Not timed: {escape(whole)}")
+        console.print(f"Effects were not timed: {escape(whole)}")
         return
     table = table_of("effect", right=(f"{igm}, µs", "residual + Jacobian, µs", "cold solve, µs"))
-    table.title = "Compiled with -O2: what each effect adds"
+    table.title = "Time that each effect adds, compiled with -O2"
     table.add_row("the whole scene", f"{whole.igm:.2f}", f"{whole.jacobian:.2f}", f"{whole.cold:.2f}")
     for name, without in parts.items():
         if isinstance(without, str):

@@ -38,17 +38,17 @@ LINES = {
     "examples": "List the examples that come with the package, or copy them.",
     "docs": "Show a page of the documentation.",
     "solve": "Find the equilibrium of a scene.",
-    "view": "Move a scene in a browser: sliders, the tip under the hand, vibrations, the motion.",
+    "view": "Move a scene in a browser, by sliders or by its tip; see vibrations and motions.",
     "path": "Follow equilibria while an input moves, through folds.",
     "simulate": "Simulate the motion of a scene over time.",
     "modes": (
         "Find frequencies, damping and shapes of small vibrations about the equilibrium, and whether it is stable."
     ),
     "inverse": "Find inputs that bring rods and bodies to the targets of a scene.",
-    "identify": "Find numbers of a scene from measurements, and what these leave open.",
-    "estimate": "Find in every measured row what the robot feels: unknown inputs, with their standard deviations.",
+    "identify": "Find numbers of a scene from measurements, and say which stay open.",
+    "estimate": "Estimate the unknown inputs of every measured row, with their standard deviations.",
     "sweep": "Solve a scene for every row of a grid or a table of inputs and parameters.",
-    "check": "Validate a scene, say which effects were chosen and what the model and each effect will cost.",
+    "check": "Validate a scene, and list its effects with the cost of the model and of each effect.",
     "export": "Write a scene as C sources, a page for a browser, an FMU, or a model of MuJoCo.",
     "tune": "Find one discretisation for ranges of inputs, or for load cases.",
 }
@@ -56,7 +56,7 @@ LINES = {
 
 __all__ = ["INTERRUPTED", "NOT_FOUND", "REFUSED", "app", "main", "run"]
 
-STOPPED = "Stopped. Files that were not finished were not written."
+STOPPED = "Stopped. Unfinished files were not written."
 """Message about a command stopped by a signal."""
 
 
@@ -114,7 +114,7 @@ def _general(
     version: Annotated[
         bool,
         typer.Option(
-            "--version", callback=_print_version, is_eager=True, help="Print the versions of this and CasADi."
+            "--version", callback=_print_version, is_eager=True, help="Print the versions of the package and CasADi."
         ),
     ] = False,
 ) -> None:
@@ -226,7 +226,7 @@ def _print_refusal(console: Console, error: SceneError | ExportError) -> None:
     count = counted(len(error.problems), "problem")
     console.print(f"[bold red]Refused:[/] {count}.")
     for problem in error.problems:
-        # Without wrapping, so that paths can be copied.
+        # Lines do not wrap, so that paths can be copied.
         console.print(f"  {escape(str(problem))}", soft_wrap=True)
 
 

@@ -28,7 +28,7 @@ Ranges = Annotated[
     typer.Option(
         "--range",
         metavar="COLUMN=LOW:HIGH[:COUNT]",
-        help="Range of an input or a parameter that modes are chosen for; load cases are COUNT values in it.",
+        help="Range of an input or a parameter for which modes are chosen. Its load cases are COUNT values in it.",
     ),
 ]
 
@@ -199,11 +199,11 @@ def check_inputs_stay(
     problems = []
     for index, (option, output) in enumerate(asked):
         if any(are_one_file(output, read) for read in inputs):
-            problem = f"{output} is read by this command, and would be overwritten"
+            problem = f"this command reads {output}, and would overwrite it"
             problems.append(Problem(option, problem, "name another file"))
         for earlier_option, earlier in asked[:index]:
             if are_one_file(output, earlier):
-                problems.append(Problem(option, f"{output} is the file of {earlier_option} too", "name another file"))
+                problems.append(Problem(option, f"{output} is also the file of {earlier_option}", "name another file"))
     refuse(problems)
 
 

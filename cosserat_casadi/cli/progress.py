@@ -60,7 +60,7 @@ def progress_bar(*more: ProgressColumn) -> Progress:
         TimeElapsedColumn(),
         *more,
     )
-    # On standard error: standard output is for results, and may go into a file.
+    # The display uses standard error: standard output is for results, and may go into a file.
     return Progress(*columns, console=Console(stderr=True), transient=True)
 
 

@@ -113,8 +113,8 @@ class Blocks:
     def separate(self) -> bool:
         """Whether no entry couples two blocks directly, past the interface."""
         rows, columns = self.pattern.get_triplet()
-        pairs = ({self.owners[i], self.owners[j]} - {INTERFACE} for i, j in zip(rows, columns, strict=True))
-        return all(len(pair) < 2 for pair in pairs)
+        owners = ({self.owners[i], self.owners[j]} for i, j in zip(rows, columns, strict=True))
+        return all(len(pair - {INTERFACE}) < 2 for pair in owners)
 
     @cached_property
     def interface(self) -> list[int]:

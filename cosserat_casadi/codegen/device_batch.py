@@ -501,8 +501,8 @@ def _bytes_of(array: np.ndarray[Any, Any]) -> tuple[int, int]:
 def _contiguous(shape: tuple[int, ...], strides: list[int]) -> bool:
     """Whether numbers are contiguous; strides of axes with one entry have no meaning."""
     apart = [int(np.prod(shape[i + 1 :])) for i in range(len(shape))]
-    placed = all(own == wanted or size == 1 for own, wanted, size in zip(strides, apart, shape, strict=True))
-    return placed or 0 in shape
+    is_placed = (own == wanted or size == 1 for own, wanted, size in zip(strides, apart, shape, strict=True))
+    return 0 in shape or all(is_placed)
 
 
 def _tensor_of(capsule: Any) -> _Tensor:

@@ -47,7 +47,7 @@ class ListedValues(StackedLayout[ListedValue]):
     def _scene_values(self) -> FloatArray:
         """Values of the scene, shape (size,)."""
         values = self.pack()
-        # Solutions keep what they were found for: nobody may change it under them.
+        # Solutions keep their inputs: no caller may change them.
         values.setflags(write=False)
         return values
 
@@ -139,7 +139,7 @@ class ListedParameters(ListedValues):
             return self._scene_values
         if isinstance(values, Mapping):
             return self.pack(values)
-        # Numbers that are not finite are the solver's to judge, as those of inputs are.
+        # The solver judges numbers that are not finite, also in inputs.
         p = np.ascontiguousarray(values, dtype=np.float64).ravel()
         if p.size != self.size:
             self.split(p)

@@ -139,7 +139,7 @@ def _of_one_rod(model: Model, names: Names, entries: Sequence[FunctionInC], most
         function = one.form.function if isinstance(one, ColumnedFunction) else one
         first = function.name_in()[:2]
         if function.is_a("SXFunction") and (first == ["x", "inputs"] or (clamped and first[0] == "q")):
-            # To the solver parameters are further inputs.
+            # The solver takes parameters as further inputs.
             inputs_size = function.size1_in(function.index_in("inputs"))
             straight[inputs_size, function.n_instructions() <= SHORT].append(one)
     for number, functions in enumerate(straight.values()):

@@ -244,7 +244,7 @@ def described_unknowns(model: Model) -> list[tuple[dict[str, Any], str]]:
             words = f"{basis} coefficients of {strain} of rod {rod}, element after element"
             add(rod, {"strain": strain}, first, count, words)
     supports = {support.rod: support.kind for support in model.scene.supports}
-    # Every entry is one of a rod: that of bodies without rods is the first.
+    # Every entry has a rod: bodies without rods get the first one.
     first_rod = next(iter(discrete.rods))
     for placed in discrete.constraints:
         rod = placed.rod or first_rod
@@ -258,7 +258,7 @@ def described_unknowns(model: Model) -> list[tuple[dict[str, Any], str]]:
         holders = [joint.rod for joint in model.scene.joints if joint.rod and name == ("body", joint.body)]
         place = discrete.deviation(name)
         rod = name.name if name.kind == "rod" else (holders or [first_rod])[0]
-        words = f"how far the {name} has moved and its quaternion changed"
+        words = f"displacement of the {name} and change of its quaternion"
         add(rod, {"frame": str(name)}, place.start, place.stop - place.start, words)
     for placed in discrete.free_coordinates:
         words = f"angle (rad) of {placed.where}, or its displacement over the length of the rod"
@@ -269,7 +269,7 @@ def described_unknowns(model: Model) -> list[tuple[dict[str, Any], str]]:
         words = f"tension of the tendon {tendon.name}, in units of {unit:.6g} N"
         add(tendon.rod, {"tendon": tendon.name}, discrete.tension(cable).start, 1, words, unit_N=unit)
     for stop in discrete.stops:
-        words = f"what {stop.owner} pushes with"
+        words = f"force or moment of the stop of {stop.owner}"
         add(stop.placed.rod or first_rod, {"stop": stop.owner}, discrete.stop(stop).start, 1, words)
     for block, place in discrete.unknowns.of_kind(BlockKind.FLOW):
         branches = len(discrete.rods[block.owner].properties.branches)

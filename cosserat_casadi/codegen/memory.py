@@ -62,7 +62,7 @@ def _on_calls(generated: Mapping[str, str]) -> dict[str, int]:
     # Functions come before those that call them.
     for function in re.split(r"^(?=(?:static|CASADI_SYMBOL_EXPORT) )", text, flags=re.M)[1:]:
         head, _, rest = function.partition("{")
-        # What follows a function up to the next one is none of its calls.
+        # Text between a function and the next one holds none of its calls.
         body = rest.partition("\n}")[0]
         found = DEFINED.search(head)
         if found is None:

@@ -182,7 +182,7 @@ def _input_slopes(stage: MotionStage, name: str) -> ca.Function:
     plain = stage.dynamics.inverse_dynamics
     if not chooses(plain):
         scalars = [ca.SX.sym(word, plain.sparsity_in(i)) for i, word in enumerate(plain.name_in()[:-1])]
-        # Of scalars only what reads an input is differentiated, of matrices all.
+        # A function of scalars differentiates only terms that read an input, a function of matrices all.
         straight = _by_inputs(stage, scalars, name)
         if straight.n_instructions() <= STRAIGHT:
             return straight

@@ -180,7 +180,7 @@ def _name_problems(name: str) -> Iterator[Problem]:
 
 
 def _symbol_problems(names: Names) -> Iterator[Problem]:
-    # Without a suffix, the functions of a rod that is alone clash with none.
+    # The functions of a single rod clash with no other without a suffix.
     rods = names.rods if len(names.rods) > 1 else ()
     owners_by_kind = {
         Owner.ROD: rods,

@@ -125,7 +125,7 @@ def _of_programs(programs: Sequence[PartialProgram], name: str, first: int = 0) 
     parts = list[Part]()
     for number, group in enumerate(alike(program.key for program in programs), first):
         one, constants_of_each = shared_program([programs[i] for i in group], f"{name}_{number}")
-        # Of the steps of a short part, such as a platform's, few entries are read: it is foreseen ten times too long.
+        # A short part, such as a platform's, reads few entries of its steps: the forecast is ten times too long.
         may_be_short = max(foreseen(programs[i].steps) for i in group) <= STRAIGHT_IN_SHARES
         kernels.append(_short_or_in_loops(one) if may_be_short else function_of(one))
         for i, constants in zip(group, constants_of_each, strict=True):
@@ -195,7 +195,7 @@ def sharing(functions: Sequence[ca.Function], kernels: Sequence[ca.Function], na
         kernels: the functions as straight-line code with dense outputs, kept for a function that is like no other.
         name: prefix of the names of shared functions, before their numbers.
     """
-    # Common terms are shared afterwards: those of one rod may be equal by chance.
+    # Common terms are shared afterwards: terms of a single rod may be equal by chance.
     streams = [Stream.settled(stacked(function)) for function in functions]
     result = list(kernels)
     for number, members in enumerate(alike(stream.key for stream in streams)):

@@ -83,7 +83,7 @@ def _lines(function: ca.Function) -> Stream:
 def partial_program(program: Program, entries: Sequence[int]) -> PartialProgram:
     """Extract the part of a program that computes some of the stored entries of its single result."""
     (result,) = program.results.values()
-    # In the order in which they are computed they need not be brought into another.
+    # The order of computation saves a permutation.
     ordered = sorted(entries, key=result.numbers.__getitem__)
     wanted = result.numbers[ordered]
     origins = program.origins

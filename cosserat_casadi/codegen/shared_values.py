@@ -106,7 +106,7 @@ class _Sharing:
                     users[result] = users[results[0]]
             for operand in listing.operands(number):
                 users[operand] |= users[number]
-        # What depends on an argument that one function has alone is computed by that function alone.
+        # A value that depends on an argument of one function is computed by that function.
         homes = []
         for number, value in enumerate(listing.values):
             shared = users[number].bit_count() > 1 and isinstance(value, Computed | Called)

@@ -48,7 +48,7 @@ def stability_sources(model: Model, names: Names) -> dict[str, str]:
     """
     allowed = variations(model)
     units = allowed.units
-    # As in Python: rods of one energy unit need no scaling, and keep their digits.
+    # Rods with equal energy units need no scaling, and keep their digits, as in Python.
     roots = np.sqrt(units / units.max()) if len(set(units)) > 1 else np.ones(len(units))
     words: dict[str, Any] = {
         "name": names.name,

@@ -293,7 +293,7 @@ def exact_second(plain: ca.Function, slopes: ca.Function, adjoint: ca.Function) 
     for j in arguments:
         missing = [i for i in arguments if i not in known]
         if not any(adjoint.jac_sparsity(i, j).nnz() for i in missing):
-            # What there is mirrors blocks that are known.
+            # The block mirrors a known one.
             continue
         blocks = _by_directions(adjoint, symbols, j)
         for i in missing:

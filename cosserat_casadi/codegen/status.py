@@ -32,14 +32,14 @@ class MotionStatus(Enum):
     """Outcomes of a step in C; the value is the sentence for the user. New members come last."""
 
     DONE = "Done: the equations of motion are solved to the tolerance."
-    NOT_SOLVED = "The equations of the step were not solved, in parts neither: take shorter steps, or move less in one."
-    NOT_FINITE = "A number that was given, or one that the equations gave, is not finite."
+    NOT_SOLVED = "The step could not be solved, also not in parts: take shorter steps, or move less in a step."
+    NOT_FINITE = "An input of the step, or a value of its equations, is not finite."
     SINGULAR = "The equations of the step are singular; constraints may contradict or repeat each other."
-    BAD_STEP = "The length of the step is no positive number of seconds."
+    BAD_STEP = "The length of the step is not a positive number of seconds."
     INCONSISTENT = "Supports, joints or cables are not closed: start from an equilibrium."
-    NO_ACCELERATION = "A base, a length or a joint is moved, and its acceleration was not given: give it, zeros too."
+    NO_ACCELERATION = "A base, a length or a joint moves, but its acceleration is missing: give it, even if it is zero."
     PATH_VANISHED = (
-        "At the end of the step the rod is bent so far that the path of a tendon has no length left in it: lessen the "
+        "At the end of the step the rod bends so far that the path of a tendon has no length left in it: lessen the "
         "loads, or move the path nearer to the axis."
     )
     BEYOND_MATERIAL = (

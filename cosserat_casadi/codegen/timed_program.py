@@ -65,7 +65,7 @@ class Program:
         names = scene_names(NAME, model.scene)
         for file, text in _sources(model, names).items():
             (folder / file).write_text(text, encoding="utf-8")
-        # What the demo does not time is half of the work for the compiler: it is not optimised.
+        # Half of the compiler's work is code that the demo does not time: it is not optimised.
         wanted = ["timed_demo.c", "timed.c", "timed_kernels.c", "untimed.o", "-lm", "-o", "demo"]
         beside = shlex.join([*compiler_words(compiler, ("-O0", "-std=c99")), "-c", "untimed.c"])
         program = shlex.join([*compiler_words(compiler, FLAGS), *wanted])
@@ -102,7 +102,7 @@ def _sources(model: Model, names: Names) -> dict[str, str]:
     parts = assembled(model, names)
     every = kernels(model, names, parts)
     untimed = {names.kernel(word, rod) for rod in names.rods for word in ("tip_jacobian", "shape")}
-    # The header of the kernels declares all of them; what is not timed has a source of its own.
+    # The header declares all kernels; those that are not timed have a separate source.
     generated = kernel_sources(every, names)
     timed = kernel_sources([f for f in every if f.name() not in untimed], names)
     beside = kernel_sources([f for f in every if f.name() in untimed], names, "untimed")

@@ -84,7 +84,7 @@ def cache_folder() -> Path:
     try:
         home = Path.home()
     except RuntimeError:
-        # The user is not known to the system, as in a container: nobody else may write to what is made for us.
+        # The system does not know the user, as in a container: nobody else may write to our files.
         return _folder_of_process()
     return home / FOLDERS.get(sys.platform, ".cache") / "cosserat_casadi"
 
@@ -238,7 +238,7 @@ def keep_within(folder: Path, limit: int = LIMIT) -> None:
     now = time.time()
     files: list[tuple[float, int, Path]] = []
     for path in folder.iterdir():
-        # Another process may remove what is listed here.
+        # Another process may remove the listed files.
         with suppress(OSError):
             found = path.stat()
             if path.name.startswith(SCRATCH) and now - found.st_mtime > ABANDONED:

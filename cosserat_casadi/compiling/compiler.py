@@ -189,10 +189,10 @@ def find_compiler(wanted: str | None = None) -> str:
 @lru_cache(maxsize=16)
 def _found(asked: str, path: str | None) -> str:
     """Find the command on a path of folders, once in a process, because every motion asks."""
-    # What pip installs lies beside the interpreter, whose folder is on no path unless its environment is activated.
+    # pip installs programs beside the interpreter, whose folder is on the path only in an activated environment.
     folders = os.pathsep.join([path or os.defpath, str(Path(sys.executable).parent)])
     for candidate in [asked] if asked else COMPILERS:
-        # A path may hold blanks: what is a program as it stands is no command.
+        # A path may hold blanks: the name of an existing program is not split into a command.
         whole = shutil.which(candidate, path=folders)
         words = [candidate] if whole else _words(candidate)
         program = shutil.which(words[0], path=folders)
@@ -237,7 +237,7 @@ def _compile(
         doing = f"Compiling {name}"
         if progress is not None:
             progress(doing, 0, len(sources))
-        # What fails, or an interrupt, stops the compilers that are still running.
+        # A failure or an interrupt stops the running compilers.
         with ThreadPoolExecutor() as pool, Processes(LONGEST) as processes:
             running = [
                 pool.submit(_run, processes, [*call, "-c", str(source), "-o", str(made)], made, source)
@@ -337,7 +337,7 @@ class Processes:
         with self._lock:
             if self._stopped:
                 return -signal.SIGTERM, ""
-            # In a session of its own: what it has started in turn can be stopped with it.
+            # The compiler gets its own session, so that its child processes can be stopped with it.
             process = subprocess.Popen(
                 command,
                 cwd=folder,

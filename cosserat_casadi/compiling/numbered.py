@@ -112,7 +112,7 @@ class Origins:
     def __init__(self) -> None:
         # Arrays of things with room for more, which is doubled when it is full.
         self._first = np.zeros(64, dtype=np.int64)
-        # Of every number the thing that it is an entry of; 0 for all constants.
+        # The operation whose entry each number is; 0 for all constants.
         self._owners = np.zeros(64, dtype=np.int64)
         self._values: list[list[float] | None] = []
         self.sizes: list[int] = []
@@ -264,6 +264,6 @@ def _gathered(origins: Origins, columns: dict[int, ca.MX], numbers: Numbers) -> 
         pool.append(column_of_owner)
         places[own] = size + within
         size += column_of_owner.numel()
-    # Of one entry that is taken several times CasADi makes a row.
+    # CasADi makes a row from an entry that is taken several times.
     entries: ca.MX = ca.vec(ca.vertcat(*pool).nz[places.tolist()])
     return entries

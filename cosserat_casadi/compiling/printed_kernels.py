@@ -373,7 +373,7 @@ def _longest_with_each(tables: Sequence[ConstantTable]) -> dict[ConstantTable, C
 
 def _tables_in_c(name_of: Mapping[ConstantTable, str], stem: str) -> str:
     """Write the constant arrays in C, from the names by which they are read."""
-    # Of arrays under one name the longest comes last.
+    # The longest of arrays with one name comes last.
     by_length = sorted(name_of, key=lambda table: len(table.numbers))
     longest = {name_of[table]: table for table in by_length if table.type != "int"}
     texts = [longest[name].text(name) for name in dict.fromkeys(name_of.values()) if name in longest]

@@ -450,7 +450,7 @@ class _Writing:
         """Entries of the operands of calls, in the order in which the function reads them."""
         width = self._width(unit)
         of_calls = [_joined([operand.numbers for operand in step.operands]) for step in unit.steps]
-        # Lanes that are left over compute what the last call does.
+        # Surplus lanes repeat the last call.
         of_calls += [of_calls[-1]] * (-len(of_calls) % width)
         grouped = [np.array(of_calls[first : first + width]).T.ravel() for first in range(0, len(of_calls), width)]
         return _joined(grouped)

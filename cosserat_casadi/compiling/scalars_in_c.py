@@ -240,7 +240,7 @@ class _Writing:
     def _write_main(self) -> None:
         """Write the function itself, as a sequence of functions if it is long."""
         given = "const casadi_real **arg, casadi_real **res, casadi_real *w"
-        # What one of them passes on to others stands behind all else.
+        # Values that parts pass on stand behind all others.
         parts, passed = in_parts(
             self.main.statements, LONGEST_OF_NUMBERS, lambda place: f"w[{place}] = {{0}};", self.place, self.reals
         )
@@ -395,7 +395,7 @@ class _Writing:
     def _append_calls(self, batch: _Batch) -> None:
         kernel = self._kernel(batch.calls)
         if kernel is not None:
-            # It works in the same array, in which kernels before have left what it reads.
+            # It works in the array in which earlier kernels left its arguments.
             self.main.statements.append(Statement(f"MADE({kernel.name()})(arg, res, w);", []))
             return
         if self._reads_places(batch):
@@ -404,7 +404,7 @@ class _Writing:
         operands = [0] * (batch.width * batch.turns * batch.operands)
         for k in range(batch.width * batch.turns):
             turn, lane = divmod(k, batch.width)
-            # Lanes that are left over compute what the last call does.
+            # Surplus lanes repeat the last call.
             call = self.listing.calls[batch.calls[min(k, len(batch.calls) - 1)]]
             for i, operand in enumerate(call.operands):
                 operands[batch.operand_place(turn, lane, i)] = operand
@@ -471,7 +471,7 @@ class _Writing:
                 for entry, number in entries.items():
                     if places[entry] is not None:
                         self._compute(number)
-                # What has no place is written behind.
+                # Values without a place are appended.
                 sources = [ZERO if place is None else place for place in places]
                 self._append_gathering(f"res[{result}]", sources, asked)
             for entry, place in enumerate(places):

@@ -315,7 +315,7 @@ def _ends_of_parts(statements: Sequence[Statement], longest: int, stored: Contai
     ends = []
     for number in range(1, count):
         near = range(number * size - size // NEARNESS, number * size + size // NEARNESS + 1)
-        # What a statement computes is stored in the same part.
+        # Each part stores the values that its statements compute.
         possible = [end for end in near if not statements[end].stores(statements[end - 1].made)]
         ends.append(min(possible or near, key=passing.__getitem__))
     # A Jacobian that reads no columns has no statements for them.
@@ -354,6 +354,6 @@ def number_in_c(value: float) -> str:
         return {inf: "INFINITY", -inf: "(-INFINITY)"}.get(value, "NAN")
     text = repr(value)
     if len(text) > len(SHARED_NUMBER):
-        # Those that are there several times are read from an array.
+        # Repeated values are read from an array.
         return f"NUMBER({text})"
     return f"({text})" if value < 0 else text

@@ -261,7 +261,7 @@ class _Reading:
         """Number of entries that have to be moved for this order."""
         if self.origins.is_whole(numbers) or numbers.tobytes() in self._ordered:
             return 0
-        # Of two orders the one that keeps more neighbours: what comes next may have it for nothing.
+        # The order that keeps more neighbours wins: the next step may get it for nothing.
         breaks = np.count_nonzero(np.diff(numbers) != 1)
         return len(numbers) + breaks / len(numbers)
 
@@ -382,7 +382,7 @@ class _Reading:
         if rows < 2:
             rate = SPARSE_RATE
         computed = rows * len(right.numbers) / rate
-        # All entries of a large diagonal matrix are far more than those that it has.
+        # A large diagonal matrix has far fewer entries than its dense form.
         return computed if computed > bound else computed + self._move_time(left.dense, right)
 
     def _sparse_time(self, left: Value, right: Value) -> float:

@@ -122,7 +122,8 @@ class Condensing:
         solved = -np.linalg.solve(by_unknowns, np.concatenate(right, axis=2))
         moving = inputs.shape[1]
         alone, with_state, with_inputs, with_rate = np.split(solved, [1, 1 + size, 1 + size + moving], axis=2)
-        gaps = guess.states[:-1] @ self._transition.T + guess.unknowns @ self._drive.T - guess.states[1:]
+        reached = guess.states[:-1] @ self._transition.T + guess.unknowns @ self._drive.T
+        gaps = reached - guess.states[1:]
 
         states_by_rates = np.zeros((self._stages + 1, size, self._stages * count))
         states_by_inputs = np.zeros((self._stages + 1, size, moving))
@@ -132,7 +133,7 @@ class Condensing:
         for k in range(self._stages):
             here = slice(k * count, (k + 1) * count)
             unknowns_by_rates[k] = with_state[k] @ states_by_rates[k]
-            # Inputs at the beginning of a stage are the sum of what all rates before it have made of them.
+            # Inputs at the beginning of a stage are the sum of their changes by all earlier rates.
             unknowns_by_rates[k, :, : k * count] += self._stage.duration * np.tile(with_inputs[k][:, self._steered], k)
             unknowns_by_rates[k, :, here] += with_rate[k]
             unknowns_shift[k] = alone[k, :, 0] + with_state[k] @ states_shift[k]

@@ -54,7 +54,7 @@ def decision_variables(model: SystemFunctions) -> DecisionVariables:
     chosen = _chosen_names(model)
     if not chosen:
         remedy = "list them in inputs, or give each its range in [[bounds]]"
-        raise SceneError(Problem("inputs", "no input is named that could be found", remedy))
+        raise SceneError(Problem("inputs", "no input is left to find", remedy))
     lower, upper = narrowed(layout, model.scene.bounds)
     least = [(i, bound, lower[layout.slices[bound.input]]) for i, bound in enumerate(model.scene.bounds)]
     refuse(

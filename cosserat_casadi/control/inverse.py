@@ -271,7 +271,7 @@ class ContactProblem(SoughtInputs):
 
         The result is None if its contacts allow no derivatives.
         """
-        assert isinstance(solution, Solution), "rods alone touch obstacles"
+        assert isinstance(solution, Solution), "only rods touch obstacles"
         equations, z = equations_at(solution)
         model = equations.model
         x = ca.MX.sym("x", model.size)

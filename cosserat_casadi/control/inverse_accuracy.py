@@ -130,7 +130,7 @@ def inverse_rows(
         finer = levels.finer(count, model, [result.solution for result in pending.values()])
         starts = {}
         for row, result in list(pending.items()):
-            # One solve at the same inputs tells what the level leaves, and is where a next search would start.
+            # One solve at the same inputs gives the error of the level, and the start of a further search.
             reference = levels.reference(result.solution, finer)
             judged = replace(result, solution=levels.judged(result.solution, reference))
             ended = _ended(judged, stable, fixed=scene.accuracy.fixed)
@@ -150,7 +150,7 @@ def _ended(judged: Inverse, stable: bool, *, fixed: bool) -> Inverse | None:
     """The result of a row whose error was estimated; None where more modes and nodes serve it better."""
     shape_error = judged.solution.largest_error
     if fixed and (shape_error is None or shape_error > LARGEST_SHAPE_ERROR):
-        # As a solve on modes and nodes that the user fixed: without an estimate nothing vouches for the gaps.
+        # As for a solve on fixed modes and nodes, the gaps are not known without an estimate.
         return _unresolved(judged)
     # A search that took too long for its starts is not repeated on more modes, where it takes longer still.
     if fixed or _error_within(judged) or judged.starts_left_out or judged.cut_short:
@@ -180,7 +180,7 @@ def _searched(
             progress(len(found), len(rows))
         row = min(remaining, key=lambda candidate: (distances[candidate], candidate))
         remaining.discard(row)
-        # The first equilibrium meets no targets: what is near it is not known to be.
+        # The first equilibrium meets no targets: whether they are near is not known.
         searched = search if starts[row] is first else search_near
         result = searched(replace(problem, targets=rows[row]), starts[row], stable, STARTS, report)
         found[row] = result

@@ -25,7 +25,7 @@ from cosserat_casadi.result import Result
 UNSTABLE = "Not stable: a real rod leaves this equilibrium. "
 """First sentence of the message of an unstable result."""
 
-NOT_STABLE = " No stable equilibrium was found that comes as near."
+NOT_STABLE = " No stable equilibrium as near was found."
 """Last sentence of the message of an unstable result if a stable one was wanted."""
 
 
@@ -130,7 +130,7 @@ def _targets_sentence(result: Inverse) -> str:
     missed = [gap for gap, reached in zip(result.gaps, verdicts, strict=True) if not reached]
     if missed:
         misses = "; ".join(_words(gap) for gap in missed)
-        sentence = f"The targets are not all met; the closest that was found misses {misses}."
+        sentence = f"Not all targets are met; the closest result misses {misses}."
         return sentence + _minimum_sentence(result)
     if _missed_by_the_model(result):
         return _model_sentence(result)

@@ -90,7 +90,7 @@ class LiftedProblem(SoughtInputs):
             rounds += 1
             cut_short = self.optimiser.stats()["return_status"] == OUT_OF_TIME
             if not np.all(np.isfinite(optimum)):
-                # What the round before ended at is still a proposal.
+                # The result of the last round is still a proposal.
                 break
             x = optimum[:size]
             change = optimum[size:]

@@ -100,7 +100,7 @@ def _bordered(model: Model, given: list[Matrix]) -> Matrix:
     jacobian = model.jacobian(*given)[0]
     free = admissible.free.tolist()
     held = admissible.held.tolist()
-    # Rows of the residual are without unit, each in that of its own rod: multiplied by their units they are energies.
+    # Each row of the residual is divided by the unit of its rod: times these units the rows are energies.
     stiffness = ca.diag(ca.DM(_energy_units(model))) @ jacobian[free, free]
     symmetric = (stiffness + stiffness.T) / 2
     constraints = ca.vertcat(jacobian[held, free], _quaternion_growth(model, given[0])[:, free])
@@ -116,7 +116,7 @@ def _quaternion_growth(model: Model, x: Matrix) -> Matrix:
     rows = []
     for name, frame in discrete.frames.items():
         frame_slice = discrete.deviation(name)
-        # A frame has 7 unknowns: three of its position, then what its quaternion differs from that at the start.
+        # A frame has 7 unknowns: three of its position, then the change of its quaternion since the start.
         quaternion = ca.DM(frame.start.quaternion) + x[frame_slice][3:]
         before = ca.MX(1, frame_slice.start + 3)
         after = ca.MX(1, model.size - frame_slice.stop)

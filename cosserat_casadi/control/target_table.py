@@ -91,5 +91,5 @@ def _column_problems(where: str, header: list[str], target: scenes.Target) -> li
     problems += [Problem(where, f"has an unknown column {name}", remedy) for name in header if name not in known]
     if oriented and "quaternion" not in type(target).model_fields:
         kind = 'give the target of the scene kind = "pose"'
-        problems.append(Problem(where, "has orientations, but the target leaves them free", kind))
+        problems.append(Problem(where, "has orientations, but the target leaves orientations free", kind))
     return problems

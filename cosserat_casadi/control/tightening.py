@@ -75,7 +75,7 @@ class Tightened:
         """A sentence for the user."""
         for number, solution in enumerate(self.equilibria):
             if not solution.converged:
-                return f"Stage {number} has no equilibrium in exact contact that was found: {solution.message}"
+                return f"Stage {number} has no known equilibrium in exact contact: {solution.message}"
         known = f"rods in exact contact, known to {self.error_estimate:.2g},"
         told = f"{known} are within {self.difference:.2g} of the problem's"
         unstable = [number for number, solution in enumerate(self.equilibria) if solution.stable is False]
@@ -87,7 +87,7 @@ class Tightened:
         if self.converged:
             return f"Tight: {told}.{note}"
         remedy = "sections" if self.difference > self.error_estimate else "modes of the model"
-        return f"Not tight: {told}, where {self.tolerance:.2g} was asked for: take more {remedy}.{note}"
+        return f"Not tight: {told}, but the tolerance is {self.tolerance:.2g}: take more {remedy}.{note}"
 
 
 def tightened(

@@ -23,6 +23,7 @@ from cosserat_casadi.maths.pose_change import change_size
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discretise import ADDED_MODES_IN_LAYERS
+from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.model.watched import SAMPLES, WatchedNumbers, watched_cables
 from cosserat_casadi.numerics.neutral import regular_inverse
@@ -66,6 +67,12 @@ NO_WRENCH = 1e-6
 
 SMALL_PART = 0.01
 """Share of a whole wrench, in units of EI/ℓ, below which the error of its force or moment is relative to that share."""
+
+THINNER = 1e-3
+"""Relative change of the widths for a difference of residuals; its error of second order is as small."""
+
+WAY = 1e-3
+"""Share of the change of the unknowns at which poses are compared: the whole change may bend rods far."""
 
 
 @dataclass(frozen=True)
@@ -152,7 +159,7 @@ def with_notes(solution: Answer) -> Answer:
 
 
 FRICTION_OF_CONTACT = (
-    " Friction acts in motion and on paths: one equilibrium would be held in many shapes, and this one has none."
+    " Friction acts in motion and on paths. With friction, many shapes could be in equilibrium; this answer is without."
 )
 """A sentence on an equilibrium of rods that rub on obstacles, or on each other."""
 
@@ -508,3 +515,29 @@ def _relative_change(values: FloatArray, difference: FloatArray, left: float, le
     """Norm of a difference plus the residual, over the norm of the values or the least norm that counts."""
     size = max(float(np.linalg.norm(values)), least)
     return (float(np.linalg.norm(difference)) + left) / size
+
+
+def layer_error(solution: Solution) -> float | None:
+    """Estimated change of the watched poses and lengths to zero widths of contact; None without smooth contact.
+
+    Layers push by a law F(g/w) of the gap over the width. With thinner layers and a stiffness in proportion to 1/w, the
+    gap under the same force is smaller in proportion: to first order the answer moves in proportion to the width. So
+    its derivative by the logarithm of all widths is its distance from the answer with zero widths. It follows from the
+    equations at the answer, dx = −J⁻¹ ∂r/∂(log w) by the implicit function theorem, without a solve.
+
+    Args:
+        solution: the end of a solve. There is no estimate without an equilibrium, or if friction remembers a path.
+
+    Returns:
+        distance over the length or angle in rad, whichever is largest; None without an estimate.
+    """
+    model = solution.model
+    if not solution.converged or not model.discrete.has_layers or model.inputs.memory is not None:
+        return None
+    thinner = kept_with(model, "_thinner_layers", lambda: Model(model.discrete.with_layers(1.0 - THINNER)))
+    arguments = (solution.x, solution.inputs, 1.0)
+    residual_change = column(thinner.path_residual(*arguments)) - column(model.path_residual(*arguments))
+    change = -inverse_jacobian(solution) @ residual_change / THINNER
+    before, after = (watched_at(solution, x) for x in (solution.x, solution.x + WAY * change))
+    estimate = SAFETY * change_size(after.change_from(before)) / WAY
+    return float(estimate) if np.isfinite(estimate) else np.inf

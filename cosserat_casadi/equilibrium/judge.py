@@ -148,9 +148,9 @@ def _with_stability(solution: Solution) -> Solution:
 def stability_note(stability: Stability, critical: bool) -> str:
     """A sentence for an equilibrium with a variation that costs no energy, or releases some; else empty."""
     if critical:
-        return " It is critical: some variation costs no energy to second order; a slight change may unsettle it."
+        return " It is critical: some variation costs no energy to second order; a slight change may make it unstable."
     if stability.neutral:
-        return " It is neutral: the rod can be turned on through equilibria alike without energy."
+        return " It is neutral: the rod can turn through equal equilibria without energy."
     if stability.stable:
         return ""
     if stability.negative == 1:

@@ -87,14 +87,15 @@ def residual_by_inputs(model: Model, x: FloatArray, inputs: FloatArray) -> Float
 
 def motion(model: Model, x: FloatArray, inputs: FloatArray, step: FloatArray) -> float:
     """Motion of the watched poses by a step of the unknowns, to first order: over the length, or in quaternions."""
-    share = STEP / max(float(np.abs(step).max(initial=0.0)), STEP)
-    change = column(model.watched(x + share * step, inputs)) - column(model.watched(x, inputs))
-    return float(np.abs(change).max(initial=0.0)) / share
+    largest = float(np.abs(step).max(initial=0.0))
+    share = STEP / max(largest, STEP)
+    before, after = (column(model.watched(unknowns, inputs)) for unknowns in (x, x + share * step))
+    return float(np.abs(after - before).max(initial=0.0)) / share
 
 
 NOT_KNOWN = (
-    "Whether constraints lock the modes that the scene fixes is not known: no equilibrium was found at the scene's own "
-    "inputs, and an equilibrium tells."
+    "Whether constraints lock the modes that the scene fixes is not known: the test needs an equilibrium, and none "
+    "was found at the scene's own inputs."
 )
 """Sentence without an equilibrium at which locking could be tested."""
 
@@ -104,8 +105,8 @@ def locking_sentence(locked: Sequence[str]) -> str:
     if not locked:
         return ""
     return (
-        f"The model is kinematically locked: its constraints leave its modes no motion that {', '.join(locked)} could "
-        "cause, and on more modes there is one; leave modes out of the scene, or give more."
+        f"The model is kinematically locked: its constraints leave its modes no motion by {', '.join(locked)}, though "
+        "more modes would have one: leave modes out of the scene, or give more."
     )
 
 

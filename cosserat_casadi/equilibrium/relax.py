@@ -40,7 +40,7 @@ RANDOM_TRIES = 4
 OFF = 0.3
 """Length of a perturbation off a saddle (2-norm of the strain coordinates)."""
 
-PATH_OF_ENERGY = " It was reached by letting the rod settle to less energy, not by growing the load."
+PATH_OF_ENERGY = " The rod reached it by settling to less energy, not by growth of the load."
 """Sentence in the message of a relaxed solution."""
 
 

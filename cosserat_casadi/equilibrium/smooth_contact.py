@@ -53,8 +53,8 @@ def _too_deep(contacts: list[Contact]) -> str:
         return ""
     worst = contacts[int(np.argmax(depths))]
     return (
-        f" {worst.owner!r} is {max(depths):.3g} widths deep inside {worst.obstacle!r}, too deep to be contact: give "
-        "the contact more width or stiffness."
+        f" {worst.owner!r} is {max(depths):.3g} widths deep inside {worst.obstacle!r}, too deep for contact: give the "
+        "contact more width or stiffness."
     )
 
 
@@ -191,11 +191,14 @@ def _contacts_of_pair(solution: Solution, pair: ContactPair) -> Iterator[Contact
 
 def _nearest(solution: Solution, pair: ContactPair, place: tuple[float, float]) -> tuple[tuple[float, float], float]:
     """Abscissae near a place at which two rods are nearest, between their sections too, and the gap there, m."""
-    around = [np.clip(at + LOOKED_AT_BETWEEN / count, 0.0, 1.0) for at, count in zip(place, pair.sections, strict=True)]
-    first, second = (solution.pose(X, rod).position for X, rod in zip(around, pair.rods, strict=True))
-    gaps = np.linalg.norm(first[:, None] - second, axis=2) - _touching(solution, pair, *around)
+    spacings = [LOOKED_AT_BETWEEN / count for count in pair.sections]
+    first, second = (np.clip(at + spacing, 0.0, 1.0) for at, spacing in zip(place, spacings, strict=True))
+    first_positions = solution.pose(first, pair.rods[0]).position
+    second_positions = solution.pose(second, pair.rods[1]).position
+    distances = np.linalg.norm(first_positions[:, None] - second_positions, axis=2)
+    gaps = distances - _touching(solution, pair, first, second)
     row, column = np.unravel_index(np.argmin(gaps), gaps.shape)
-    return (float(around[0][row]), float(around[1][column])), float(gaps[row, column])
+    return (float(first[row]), float(second[column])), float(gaps[row, column])
 
 
 def _touching(solution: Solution, pair: ContactPair, first: FloatArray, second: FloatArray) -> FloatArray:

@@ -203,7 +203,7 @@ class SmoothBarriers:
         if layer.body is not None:
             place = self.model.body[layer.body](x, inputs)[0].full().T
             return np.asarray(seen_from(self.model, layer.obstacle, x, inputs, place)[0])
-        assert layer.rod is not None, "a layer of no body is of a rod"
+        assert layer.rod is not None, "a layer belongs to a body or to a rod"
         along = self._looked_at[layer.rod].positions(layer.obstacle, x, inputs)
         return np.array([np.interp(layer.at, SECTIONS, axis) for axis in along.T])
 
@@ -337,7 +337,7 @@ def length_of(discrete: DiscreteScene, layer: ContactLayer) -> Scalar:
     """Unit of depths in a layer: the length of its rod, or of the longest rod that holds its body, m."""
     if layer.body is not None:
         return discrete.body_frame(layer.body).length
-    assert layer.rod is not None, "a layer of no body is of a rod"
+    assert layer.rod is not None, "a layer belongs to a body or to a rod"
     return discrete.rods[layer.rod].properties.length
 
 

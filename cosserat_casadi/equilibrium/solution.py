@@ -216,7 +216,7 @@ class Solution(Equilibrium[Model]):
         path. It is computed from the Jacobian on first use.
         """
         # The module imports this one.
-        from cosserat_casadi.equilibrium.layer_error import layer_error
+        from cosserat_casadi.equilibrium.answer_error import layer_error
 
         return layer_error(self)
 
@@ -302,7 +302,7 @@ class Solution(Equilibrium[Model]):
         discrete = self.model.discrete
         discrete_rod = discrete.rods[name]
         rod_slice = discrete.unknowns.strain(name)
-        # Strains are per reference length: those of a rod that is drawn out are scaled by the ratio of lengths.
+        # Strains are per reference length: the ratio of lengths scales them for a rod that is drawn out.
         ratio = self.model.length_ratio(name, self.inputs)
         q = ca.DM(self.x[rod_slice])
         strain = ca.DM(discrete_rod.at(q, np.atleast_1d(X), ratio))

@@ -44,13 +44,13 @@ from cosserat_casadi.numerics.newton import NewtonResult, relative_norm
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress
 
-CANNOT_RELAX = " Assemblies, free rods and cables of given length cannot be let settle to less energy."
+CANNOT_RELAX = " The search for less energy takes no assemblies, free rods and cables of given length."
 """Sentence in the message of a solution that cannot be relaxed."""
 
-IN_CONTACT = " Rods in contact cannot be let settle to less energy."
+IN_CONTACT = " The search for less energy takes no rods in contact."
 """Sentence in the message of an unstable solution in exact contact."""
 
-NONE_STABLE = " No stable equilibrium was found by letting the rod settle to less energy."
+NONE_STABLE = " The search for less energy found no stable equilibrium."
 """Sentence in the message of a solution after all tries for a stable equilibrium have failed."""
 
 AT_ONCE = " The start has other parameters, and rods would pass through an obstacle or a rod: change them by less."
@@ -235,9 +235,9 @@ def _in_contact(
     """
     refuse_held_by_contact(model.scene)
     if method != "continuation":
-        raise ValueError(f"contact is found by continuation, not by {method!r}")
+        raise ValueError(f"only continuation finds contacts, not {method!r}")
     if start is not None and not isinstance(start, Solution):
-        raise ValueError("contact is found from a solution, or from the unloaded scene: unknowns name no contacts")
+        raise ValueError("contacts need a solution to start from, or the unloaded scene: unknowns name no contacts")
     return solve_contact(
         model.scene, Grids(model.discretisation), values, start=start, newton=limits.newton, progress=progress
     )
@@ -280,7 +280,7 @@ def check_potential(model: SystemFunctions, inputs: FloatArray) -> None:
         SceneError: the loads have no potential at these inputs.
     """
     if not model.has_potential(inputs):
-        problem = "the loads have no potential, so no energy tells which equilibrium is stable"
+        problem = "the loads have no potential, so that no energy says which equilibrium is stable"
         raise SceneError(Problem("--stable", problem, "leave it out, or make the loads dead forces"))
 
 

@@ -138,7 +138,8 @@ def _yielding(jacobian: FloatArray, allowed: ConstrainedVariations) -> npt.NDArr
     gradients = np.linalg.norm(jacobian[np.ix_(allowed.held, allowed.free)], axis=1)
     pulls = np.linalg.norm(jacobian[np.ix_(allowed.free, allowed.held)], axis=0)
     own = np.abs(np.diagonal(jacobian)[allowed.held])
-    return np.asarray(allowed.held[(own > 0.0) & (gradients * pulls <= RIGID * own)])
+    is_soft = gradients * pulls <= RIGID * own
+    return np.asarray(allowed.held[(own > 0.0) & is_soft])
 
 
 def _null_space(constraints: FloatArray) -> FloatArray:

@@ -23,8 +23,8 @@ DEPENDENT = 1e-9
 """Share of the largest singular value below which a singular value counts as zero."""
 
 TAUT = (
-    " The supports hold a rod that cannot extend as far apart as it is long: it stays straight, and loads across it "
-    'have no equilibrium. Admit its extension (strain = "reissner"), or hold its ends nearer to each other.'
+    " The supports hold a rod that cannot extend at the distance of its length: it stays straight, and loads across "
+    'it have no equilibrium. Admit its extension (strain = "reissner"), or hold its ends nearer to each other.'
 )
 """Sentence in the message of a solve that fails for this reason."""
 
@@ -53,6 +53,8 @@ def held_taut(model: Model, inputs: FloatArray) -> bool:
 
 
 def _is_straight(model: Model, x: FloatArray, inputs: FloatArray, rod: str) -> bool:
-    positions = np.hstack([model.shape[rod](x, inputs, X)[0].full() for X in np.linspace(0.0, 1.0, SECTIONS)])
-    along = np.linalg.norm(np.diff(positions), axis=0).sum()
-    return bool(np.linalg.norm(positions[:, -1] - positions[:, 0]) >= (1.0 - STRAIGHT) * along)
+    sections = np.linspace(0.0, 1.0, SECTIONS)
+    positions = np.hstack([model.shape[rod](x, inputs, X)[0].full() for X in sections])
+    length = np.linalg.norm(np.diff(positions), axis=0).sum()
+    chord = np.linalg.norm(positions[:, -1] - positions[:, 0])
+    return bool(chord >= (1.0 - STRAIGHT) * length)

@@ -41,25 +41,25 @@ def check_unknowns(scene: scenes.Scene) -> None:
         problems.append(Problem("measurements", "missing", "say what was measured"))
     for i, measurement in enumerate(scene.measurements):
         if isinstance(measurement, ModeMeasurement):
-            problem = f"{measurement.quantity}: an estimate knows equilibria, and none of their vibrations"
+            problem = f"{measurement.quantity}: an estimate has equilibria only, not their vibrations"
             problems.append(Problem(f"measurements[{i}].quantity", problem, "use cosserat identify"))
         elif getattr(measurement, "time", None) is not None:
-            problem = "an estimate knows equilibria, and no motion"
+            problem = "an estimate has equilibria only, no motion"
             problems.append(Problem(f"measurements[{i}].time", problem, "leave it out, or use cosserat identify"))
     if not scene.unknowns:
-        problems.append(Problem("unknowns", "missing", "name what is to be felt"))
+        problems.append(Problem("unknowns", "missing", "name the unknowns to estimate"))
     for i, unknown in enumerate(scene.unknowns):
         where = f"unknowns[{i}]"
         if not unknown.per_row and unknown.prior is None:
-            problem = f"{unknown.name} is the same in all rows, and nothing is known of it beforehand"
+            problem = f"{unknown.name} is the same in all rows, and has no prior"
             remedy = "give it a prior, or per_row = true; or find it with cosserat identify --write before"
             problems.append(Problem(where, problem, remedy))
         elif unknown.name.endswith("quaternion"):
             remedy = "find it with cosserat identify"
-            problems.append(Problem(where, "an orientation is not estimated row by row", remedy))
+            problems.append(Problem(where, "an estimate cannot find an orientation row by row", remedy))
     if scene.unknowns and not any(unknown.per_row for unknown in scene.unknowns):
-        remedy = "give an input per_row = true, or find what all rows share with cosserat identify"
-        problems.append(Problem("unknowns", "none differs from row to row", remedy))
+        remedy = "give an input per_row = true, or find numbers that all rows share with cosserat identify"
+        problems.append(Problem("unknowns", "no unknown differs from row to row", remedy))
     refuse(problems)
 
 
@@ -91,7 +91,7 @@ def check_ranges(model: Model, layout: UnknownLayout) -> None:
         if not entry.of_input:
             lower, upper, _, _ = entry.limits()
             ends = zip([*entry.indices, *entry.indices], [*lower, *upper], strict=True)
-            # What all rows share has a prior, and need have no bounds.
+            # Unknowns that all rows share have a prior, and need no bounds.
             sides += [(index, end) for index, end in ends if np.isfinite(end)]
     corners = [[side] for side in sides]
     corners += [list(pair) for pair in combinations(sides, 2) if pair[0][0] != pair[1][0]]
@@ -128,10 +128,10 @@ def knowledge_of(layout: UnknownLayout) -> Knowledge:
     """Collect the prior knowledge of the unknowns of each row: bounds, priors, typical sizes."""
     limits = layout.own_limits
     typical = np.concatenate([entry.scales for entry in layout.own])
-    # What is known beforehand says best what is much and what is little.
+    # Priors give the best scale of an unknown.
     deviations = 1.0 / np.where(limits.weight > 0.0, limits.weight, 1.0)
     sizes = np.where(limits.weight > 0.0, deviations, typical)
-    # Searches of rows step as far as they see fit: bounds of steps by ratio are for what all cases share.
+    # Searches of rows have no bound on steps: bounds by ratio are for unknowns that all cases share.
     return Knowledge(replace(limits, ratios=np.zeros_like(limits.ratios)), sizes)
 
 

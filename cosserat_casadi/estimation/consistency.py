@@ -76,7 +76,7 @@ class Consistency:
                 f"{told}. No noise does that."
             )
         rows = [case for case, outlies in zip(cases, self.outlying, strict=True) if outlies]
-        # Where most rows stand out, the sum over all of them does, and tells it.
+        # If most rows stand out, their sum does too, and is reported.
         if rows and 2 * len(rows) <= len(cases):
             verb = "stands" if len(rows) == 1 else "stand"
             yield f"{counted(len(rows), 'row')} {verb} out, which chance does not explain: {named(rows)}."

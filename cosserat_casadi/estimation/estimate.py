@@ -193,8 +193,8 @@ def _on_contacts(cases: Sequence[str], changes: Mapping[int, str]) -> Iterator[s
     if changes:
         rows = named([f"{cases[row]} ({change})" for row, change in changes.items()])
         yield (
-            f"Within a standard deviation contacts come, go or change in {rows}: deviations there are of changes that "
-            "leave contacts as they are. Draws see both sides: give [estimation] draws."
+            f"Within a standard deviation contacts come, go or change in {rows}: deviations there hold for changes "
+            "that leave contacts as they are. Draws see both sides: give [estimation] draws."
         )
 
 
@@ -311,7 +311,8 @@ class Search:
 
         def costs(steps: FloatArray) -> FloatArray:
             held = np.zeros((*steps.shape[:2], len(self.indices) - self.own))
-            return self.library.costs(table, inputs, found.x[rows], known, np.concatenate([steps, held], axis=2))
+            changes = np.concatenate([steps, held], axis=2)
+            return self.library.costs(table, inputs, found.x[rows], known, changes)
 
         return sampled(costs, found.cost[rows], covariance, draws)
 
@@ -409,13 +410,13 @@ def _checked(result: Estimate, report: StageProgress) -> Iterator[tuple[int, flo
     found = np.flatnonzero(result.found)
     if not found.size:
         return
-    # The cases that differ most from the unloaded rod are those that the discretisation serves worst.
+    # The discretisation is worst for the cases that differ most from the unloaded rod.
     bent = np.linalg.norm(result.x[found], axis=1)
     rows = found[np.argsort(-bent, kind="stable")[:CHECKED]].tolist()
     for done, row in enumerate(rows):
         report("Checking rows", done, len(rows))
         model = result.model
-        # From the estimate: the unloaded rod may lead to another equilibrium, whose error says nothing of this one.
+        # The solve starts from the estimate: the unloaded rod may lead to another equilibrium with another error.
         start = None if model.scene.touches_exactly else result.x[row]
         parameters = result.parameters[row] if model.parameters.size else None
         solution = solve(model, result.inputs[row], parameters=parameters, start=start)
@@ -432,11 +433,11 @@ def _remarks(result: Estimate, known: Knowledge, drawn: Sampled | None) -> Itera
     unstable = [result.cases[row] for row, stable in enumerate(result.stable) if stable is False]
     if unstable:
         yield (
-            f"{len(unstable)} of {seen} rows are explained by an equilibrium that is not stable: {named(unstable)}. "
-            "A real rod leaves it. Do not believe what was found there; give priors near what is felt, or measure more."
+            f"{len(unstable)} of {seen} rows are explained by an equilibrium that is not stable: {named(unstable)}. A "
+            "real rod leaves it. Do not believe the values there; give priors near what is felt, or measure more."
         )
     for direction, count in list(result.unseen.items())[:FEW]:
-        yield f"The data do not see {direction} in {count} of {seen} rows: there the prior alone speaks."
+        yield f"The data do not see {direction} in {count} of {seen} rows: only the prior determines it there."
     at_bound = known.limits.at_end(result.values)
     for k in np.flatnonzero(at_bound.any(axis=0)):
         yield f"{result.labels[k]} is at a bound in {int(at_bound[:, k].sum())} rows: its deviation means little there."
@@ -454,5 +455,5 @@ def _remarks(result: Estimate, known: Knowledge, drawn: Sampled | None) -> Itera
                 "linearised model. Give [estimation] more draws."
             )
     if result.shared is not None and not result.shared.settled:
-        yield "What all rows share was not found to its end: its value and deviation may be off."
+        yield "The search for the unknowns that all rows share did not end: their values and deviations may be wrong."
     yield from result.consistency.sentences(result.cases)

@@ -139,11 +139,11 @@ class Estimate(Result):
 
 
 REASONS = {
-    "no_equilibrium": "No equilibrium at the values to begin with: give a prior near what is felt.",
+    "no_equilibrium": "No equilibrium at the first guess: give a prior near the expected values.",
     "singular": "A limit or bifurcation point: no derivatives there.",
     "not_found": "The search found no least misfit.",
-    BEHIND: "The search led through an obstacle or a rod, which no load brings the rods past: give a nearer prior.",
-    UNREACHED: "An obstacle or a rod is in the way, and paths of loads stall: rods may be behind.",
+    BEHIND: "The search led through an obstacle or a rod, and no load moves the rods past it: give a nearer prior.",
+    UNREACHED: "An obstacle or a rod is in the way, and paths of loads stall: rods may be behind it.",
     NOT_DETERMINED: "Neither data nor priors determine the unknowns: give priors, or measure more.",
 }
 """Reason for a missing estimate, by outcome."""
@@ -183,7 +183,7 @@ def _unseen(of_data: FloatArray, has_prior: npt.NDArray[np.bool_], labels: Seque
     """Directions of little information, in words, with the number of cases that have them."""
     eigenvalues, vectors = np.linalg.eigh(of_data)
     least = BLIND * eigenvalues[:, -1:]
-    # Where every unknown has a prior, what hardly tightens it is not seen either.
+    # If every unknown has a prior, directions that data hardly tighten are not seen either.
     limits = np.maximum(least, HARDLY_SEEN) if has_prior.all() else np.broadcast_to(least, (len(least), 1))
     counted: Counter[str] = Counter()
     for case, column in zip(*np.nonzero(eigenvalues <= limits), strict=True):

@@ -121,7 +121,7 @@ class SharedSearch:
                 shifted = self.limits.within_step(values).clipped(shifted)
                 aside.append((shifted[k] - values[k], self.search(shifted)[0]))
             (before, less), (after, more) = aside
-            # At a bound there is one side alone, and the volumes count for nothing.
+            # A bound leaves one side only, where volumes do not count.
             if before == 0.0 or after == 0.0:
                 continue
             changes = [self._volumes(rows) - self._volumes(found[0]) for rows in (less, more)]
@@ -179,7 +179,7 @@ class SharedSearch:
         q = numbers - k
         rows = found.outcome == 0
         information = found.information[rows]
-        # What stays at a bound does not move.
+        # Unknowns at a bound do not move.
         of_own, free = self._of_own(found)
         coupling = information[:, :k, k:] * free[:, :, None]
         moved = -_solved(of_own, coupling)

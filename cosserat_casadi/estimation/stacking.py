@@ -98,7 +98,7 @@ def sensor_names(model: Model, sections: dict[int, int], abscissae: FloatArray) 
     first = 0
     for number, count in sections.items():
         record = model.scene.measurements[number]
-        # Words are those of its numbers, but for a quaternion the axes of the angle.
+        # The words name its numbers, or for a quaternion the axes of the angle.
         words = [word for word, unit in zip(record.entries, record.differences, strict=False) if unit != "rad"]
         words += [f"about {axis}" for axis in AXES[3]][: len(record.differences) - len(words)]
         for column in range(first, first + count):

@@ -230,7 +230,7 @@ class ContactEquilibria(Equilibria):
         model = self.model
         own = model.scene
         if model.parameters.moving:
-            # What parameters move keeps its order among contacts: it starts where it is now.
+            # Parameters move places only within their order among contacts: the search starts at the present places.
             own = scene.model_copy(update={"parameters": own.parameters})
         return ContactEquations(own, model.pack(), Grids(model.discretisation), state, model.parameters.pack())
 
@@ -277,7 +277,7 @@ class ContactMisfit(Misfit):
         for where, solution in self._told(state):
             sentence = marginal_contact(solution)
             if sentence:
-                sentences.append(f"{where}: {sentence} Intervals are of changes that leave contacts as they are.")
+                sentences.append(f"{where}: {sentence} Intervals hold for changes that leave contacts as they are.")
         return sentences
 
     def kinked(self, state: MisfitState, other: MisfitState) -> Flags:
@@ -287,8 +287,9 @@ class ContactMisfit(Misfit):
 
     def at_kink(self, state: MisfitState, other: MisfitState) -> list[str]:
         """Contacts of only one of two states, in words."""
-        triples = zip(self.cases, _settled(state.point), _settled(other.point), strict=True)
-        return [f"{own.where}: {case.difference(beside)}" for own, case, beside in triples if case.difference(beside)]
+        pairs = zip(_settled(state.point), _settled(other.point), strict=True)
+        differences = [case.difference(beside) for case, beside in pairs]
+        return [f"{own.where}: {words}" for own, words in zip(self.cases, differences, strict=True) if words]
 
     def _told(self, state: MisfitState) -> Iterator[tuple[str, Solution]]:
         """Each case with its equilibrium."""

@@ -32,7 +32,7 @@ STEPS = 12
 CONTRACTION = 0.05
 """Largest ratio of residuals after and before a step with an old Jacobian at which the Jacobian is kept."""
 
-NOT_FOLLOWED = "Its equilibrium could not be followed to where the search begins."
+NOT_FOLLOWED = "The search could not follow its equilibrium from the scene's numbers to the first guess."
 """Reason for a case without an equilibrium at the start of the search."""
 
 Flags = npt.NDArray[np.bool_]
@@ -127,7 +127,7 @@ class Equilibria:
             the equilibria, and a sentence for each case, empty if it has one.
         """
         point, outcomes = self.loaded(inputs, first_p)
-        # From the scene's own numbers to the start, where a bound or another value moves it.
+        # The path leads from the scene's numbers to the start, if a bound or another value moves the start.
         moved, reached = self.tracked(point, point.x, wanted, p)
         converged = np.array([outcome is Outcome.CONVERGED for outcome in outcomes])
         if not np.all(converged & reached) and (np.any(p != first_p) or np.any(wanted != point.inputs)):
@@ -146,7 +146,7 @@ class Equilibria:
             elif not reason and resolution_index(self.model, moved.x[i], moved.inputs[i], p) > 1.0:
                 reason = Outcome.UNRESOLVED.value
             reasons.append(reason)
-        # The equilibria of those that were reached otherwise are of other Jacobians.
+        # Cases that were reached in another way have other Jacobians.
         return self.at_point(moved), reasons
 
     def loaded(self, inputs: FloatArray, p: FloatArray) -> tuple[Point, list[Outcome]]:

@@ -38,7 +38,7 @@ def without_equilibrium(
     reason = left_out[0].reason
     message = f"No case has an equilibrium at the start: {cases}. {reason}"
     if stopped:
-        message = f"No equilibrium at the start in {cases}. {reason} Cases without one were to stop the search."
+        message = f"No equilibrium at the start in {cases}. {reason} The scene asks to stop the search at such cases."
     shared, own = layout.start(0)
     n = len(shared)
     nothing = Statistics(
@@ -175,8 +175,9 @@ class Ending:
         remarks = []
         if found.converged and self.kinks:
             remarks.append(
-                f"The misfit is least just where contacts come, go or change: {named(self.kinks)}. Its derivatives "
-                "jump there, and intervals are of changes to one side: measure where they press, or nothing touches."
+                f"The misfit is least exactly where contacts come, go or change: {named(self.kinks)}. Its derivatives "
+                "jump there, and intervals hold for changes to one side only: measure where contacts press, or "
+                "nothing touches."
             )
         rms = found.rms()
         if rms is not None and rms > POOR:
@@ -187,18 +188,20 @@ class Ending:
         barred = self.misfit.barred
         if barred and (not found.converged or (rms is not None and rms > POOR)):
             remarks.append(
-                f"Steps that led through an obstacle or a rod were refused in {named(barred)}: rods stay on the "
-                "side on which the scene has them. Check on which side they were measured, or begin nearer to the "
-                "answer."
+                f"The search refused steps through an obstacle or a rod in {named(barred)}: rods stay on the side on "
+                "which the scene has them. Check on which side they were measured, or begin nearer to the answer."
             )
         if found.converged and found.statistics.unseen:
             directions = "; ".join(described(direction) for direction in found.statistics.unseen)
-            remarks.append(f"The data do not determine {directions}: there the priors alone speak.")
+            remarks.append(f"The data do not determine {directions}: only the priors do.")
         if found.at_bounds:
-            remarks.append(f"At a bound: {', '.join(found.at_bounds)}. The intervals of others take that as given.")
+            remarks.append(
+                f"At a bound: {', '.join(found.at_bounds)}. The intervals of the other unknowns take these values as "
+                "exact."
+            )
         if found.unstable:
             remarks.append(
-                f"The equilibrium is unstable in {named(found.unstable)}: what was measured there is hardly this one."
+                f"The equilibrium is unstable in {named(found.unstable)}: the measured equilibrium is hardly this one."
             )
         remarks += _on_own_unknowns(found)
         remarks += _on_joint_modes(found, self.misfit.joint_modes(self.fit.state))
@@ -218,14 +221,14 @@ def _on_own_unknowns(found: Identification) -> list[str]:
     for label, deviations in zip(found.layout.own_labels, found.statistics.own.T, strict=True):
         open_in = [where for where, sigma in zip(found.cases, deviations, strict=True) if np.isnan(sigma)]
         if open_in:
-            remarks.append(f"The data do not determine {label} in {named(open_in)}: its value there means nothing.")
+            remarks.append(f"The data do not determine {label} in {named(open_in)}: its value there has no meaning.")
     held_out = {row.case for row in found.rows if row.held_out}
     if held_out and found.layout.own_labels:
         numbers = sum(row.held_out for row in found.rows)
         fitted = counted(len(held_out) * len(found.layout.own_labels), "unknown")
         remarks.append(
-            f"{fitted} of the held-out cases themselves were found from their {counted(numbers, 'number')}: "
-            "only what these numbers leave is predicted."
+            f"{fitted} of the held-out cases themselves were fitted to their {counted(numbers, 'number')}: the "
+            "prediction tests only the rest of these numbers."
         )
     return remarks
 
@@ -238,7 +241,8 @@ def _on_joint_modes(found: Identification, joint_modes: Sequence[JointModes]) ->
         modes = " and ".join(str(number) for number in numbers)
         where = named([found.cases[joint.case] for joint in alike])
         sentence = (
-            f"Modes {modes} have one frequency in {where}: what was measured of them is compared with their mean."
+            f"Modes {modes} have one frequency in {where}: the measurements of these modes are compared with their "
+            "mean."
         )
         parted = np.any([joint.parted for joint in alike], axis=0)
         names = [label for label, is_so in zip(found.layout.shared_labels, parted, strict=True) if is_so]

@@ -38,10 +38,10 @@ SAME_COST = 1e-3
 NEAREST = 0.05
 """Share of the way to a start below which the start is given up, and the search begins at the first one."""
 
-NOT_SWINGING = "A mode that was measured does not swing there."
+NOT_SWINGING = "A measured mode does not vibrate there."
 """Reason for leaving out a case that has an equilibrium."""
 
-NOT_MOVING = "The steps of its motion cannot be solved there."
+NOT_MOVING = "The steps of its motion could not be solved there."
 """Reason for leaving out a motion."""
 
 MOST_RETRIES = 3
@@ -96,7 +96,7 @@ class Task:
         fit, ended_here = self._best(*started)
         misfit, fit, missing = self._with_others(misfit, fit, missing)
         fit, step_error = self._with_short_steps(misfit, fit)
-        self.report("judging what was found")
+        self.report("judging the result")
         left_out = [LeftOut(case.where, reason) for case, reason in missing]
         arrow = self._arrow_fit(misfit).linear(fit.shared, fit.own, fit.state)
         known = self._statistics(arrow, fit, misfit)
@@ -314,7 +314,7 @@ def _wide_bounds(model: AnyModel, layout: UnknownLayout) -> Iterator[str]:
             continue
         is_size = any(part in sizes_of(rod.section) for part in key.split("."))
         if is_size and np.any(lower >= rod.length):
-            yield f"{entry.record.name} is sought from {lower.max():g} m on in a rod of {rod.length:g} m: metres?"
+            yield f"{entry.record.name} may not be below {lower.max():g} m, in a rod of {rod.length:g} m: metres?"
 
 
 def far_positions(scene: scenes.Scene, entries: Sequence[tuple[int, int, float]]) -> Iterator[str]:

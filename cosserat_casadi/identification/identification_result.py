@@ -217,10 +217,11 @@ class Identification(Result):
 
         If most residuals exceed the stated deviations, they are compared with their median.
         """
-        sizes = [abs(row.residual) for row in self.rows if not row.held_out]
+        fitted = [row for row in self.rows if not row.held_out]
+        fitted.sort(key=lambda row: -abs(row.residual))
+        sizes = [abs(row.residual) for row in fitted]
         spread = max(1.0, float(np.median(sizes)) / NORMAL_MEDIAN) if sizes else 1.0
-        rows = [row for row in self.rows if not row.held_out and abs(row.residual) > OUTLIER * spread]
-        return tuple(sorted(rows, key=lambda row: -abs(row.residual)))
+        return tuple(row for row in fitted if abs(row.residual) > OUTLIER * spread)
 
     @property
     def ended_early(self) -> bool:

@@ -323,7 +323,7 @@ def _joined(rows: Sequence[_Row], layout: InputLayout, per_row: bool) -> list[Ca
     """
     names = {index: name for name, index in column_indices(layout).items()}
     problems: list[Problem] = []
-    # What one measurement of a file says of the inputs of a line holds for all measurements of that file.
+    # The inputs of a line hold for all measurements of its file.
     by_place = _settled(rows, [row.place for row in rows], names, problems)
     measured = [row for row in rows if row.datum is not None]
     keys = [_key(row, by_place[row.place], layout, per_row) for row in measured]

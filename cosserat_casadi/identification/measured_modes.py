@@ -188,7 +188,7 @@ def _cluster(motions: SmallMotions, swinging: ComplexArray, index: int) -> ModeC
     slope = 2.0 * value * motions.mass + motions.damping
     normalised = np.linalg.solve(left.T @ slope @ right, left.T)
     for branch in motions.branches:
-        # Rows of the branches were integrated, and taken out of those of the strains.
+        # Rows of the branches were integrated, and subtracted from the rows of the strains.
         rows = normalised[:, branch.flows] - normalised[:, branch.strains]
         normalised[:, branch.flows] = rows @ branch.spring / value
     return ModeCluster(value, int(chosen[0]) + 1, right, normalised)

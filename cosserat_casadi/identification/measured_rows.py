@@ -38,7 +38,7 @@ class MeasuredRows:
         count = len(rows)
         sections = max(len(data) for _, data in rows)
         self._at, self._measured, known = measured_numbers(record, [data for _, data in rows], sections)
-        # In the order of the residuals: places, their sections, the entries of these.
+        # The order is that of the residuals: places, then their sections, then the entries of each section.
         numbers = np.argwhere(known)
         self.data: list[tuple[Datum, int]] = [(rows[i][1][k], entry) for i, k, entry in numbers.tolist()]
         self.places: Indices = numbers[:, 0]

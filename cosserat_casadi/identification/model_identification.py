@@ -144,7 +144,7 @@ def identify(
         try:
             fitted = found.fitted_scene(completed)
         except SceneError:
-            # What was found is told all the same; whoever wants the scene is told why there is none.
+            # The result is reported all the same; a request for the scene gets the reason why there is none.
             break
         judged = with_discretisation(fitted, draft, _with_identified_inputs(cases, found), tell)
         same = judged.scene.accuracy == choice.scene.accuracy
@@ -190,7 +190,7 @@ def check_measured_in_contact(scene: scenes.Scene) -> None:
         SceneError: there are such measurements; the error lists all of them.
     """
     over_time = "was measured over time, and a motion that strikes an exact obstacle has no derivative at the blow"
-    vibrating = "is of a vibration, whose derivatives are not known while exact contacts slide"
+    vibrating = "belongs to a vibration, whose derivatives are not known while exact contacts slide"
     problems = []
     for i, measurement in enumerate(scene.measurements):
         timed = getattr(measurement, "time", None) is not None
@@ -298,8 +298,8 @@ def _warning(found: Identification) -> str:
     if found.error_estimate == UNKNOWN:
         error = "has an error that is not known"
     return (
-        f"The model itself {error} in {found.error_case}, where the tolerance is {tolerance:g}: the numbers found make "
-        f"up for that. {remedy}"
+        f"The model itself {error} in {found.error_case}, where the tolerance is {tolerance:g}: the identified "
+        f"numbers make up for that. {remedy}"
     )
 
 

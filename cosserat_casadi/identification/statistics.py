@@ -116,7 +116,7 @@ def statistics(
     quantile = NORMAL_95
     if noise_from is not NoiseFrom.SIGMA and freedom > 0:
         noise = math.sqrt(squares / freedom)
-        # Of Student's distribution: the noise is known as well as there are data for it.
+        # Student's distribution applies: the noise is estimated from the data.
         quantile = float(stdtrit(freedom, 0.975))
     if noise_from is NoiseFrom.BOTH and noise < 1.0:
         noise = 1.0
@@ -189,7 +189,7 @@ def _with_noise(covariance: FloatArray, prior: FloatArray, noise: float) -> Floa
         prior: weights of the priors, the square root of P, shape (n, n).
         noise: the factor.
     """
-    # What a prior holds is seen: it has no part in what is NaN.
+    # A prior determines this direction: it is not NaN.
     seen = np.nan_to_num(covariance)
     by_prior = prior @ seen
     return noise**2 * covariance + (1 - noise**2) * by_prior.T @ by_prior

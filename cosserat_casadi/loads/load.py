@@ -12,6 +12,7 @@ from abc import ABC
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import zip_longest
 from typing import ClassVar, Generic, Literal, TypeVar
 
 import casadi as ca
@@ -350,9 +351,8 @@ def coefficients(components: tuple[Scalar | tuple[Scalar, ...], ...]) -> Numbers
 def _symbolic_coefficients(components: tuple[Scalar | tuple[Scalar, ...], ...]) -> Matrix:
     """Three components with expressions among their numbers as one 3×k matrix; zeros are not stored."""
     rows = [component if isinstance(component, tuple) else (component,) for component in components]
-    longest = max(len(row) for row in rows)
-    padded = [(*row, *[0.0] * (longest - len(row))) for row in rows]
-    return ca.horzcat(*[as_vector([row[degree] for row in padded]) for degree in range(longest)])
+    degrees = zip_longest(*rows, fillvalue=0.0)
+    return ca.horzcat(*map(as_vector, degrees))
 
 
 def constant(values: Numbers) -> Matrix | None:

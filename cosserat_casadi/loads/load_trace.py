@@ -234,7 +234,7 @@ def has_potential(
     return moment_vanishes or one_axis
 
 
-# Numbers of a record that are expressions of parameters: the kernel has a symbol for each, beside those of the inputs.
+# Numbers that depend on parameters get a symbol each in the kernel, beside the symbols of the inputs.
 
 
 def expressions_in(record: Any) -> dict[str, Matrix]:

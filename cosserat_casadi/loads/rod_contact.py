@@ -374,16 +374,17 @@ def _ball() -> ca.Function:
     """(positions, data) of a panel ↦ centre of a ball about it, its radius, and its ends along the rod, 6×1, m."""
     places, data = ca.SX.sym("places", 3, PANEL), ca.SX.sym("data", DATA, PANEL)
     centre = ca.sum2(places) / PANEL
-    reach = ca.sqrt(ca.sum1((places - ca.repmat(centre, 1, PANEL)) ** 2)) + data[1, :]
-    return ca.Function("ball", [places, data], [ca.vertcat(centre, ca.mmax(reach), data[2, 0], data[2, -1])])
+    distances = ca.sqrt(ca.sum1((places - ca.repmat(centre, 1, PANEL)) ** 2))
+    ball = ca.vertcat(centre, ca.mmax(distances + data[1, :]), data[2, 0], data[2, -1])
+    return ca.Function("ball", [places, data], [ball])
 
 
 def _ball_about(balls: Matrix) -> Matrix:
     """A ball about balls, 6×k: its centre, its radius, and its ends along the rod, 6×1, m."""
     count = balls.shape[1]
     centre = ca.sum2(balls[:3, :]) / count
-    reach = ca.sqrt(ca.sum1((balls[:3, :] - ca.repmat(centre, 1, count)) ** 2)) + balls[3, :]
-    return ca.vertcat(centre, ca.mmax(reach), balls[4, 0], balls[5, -1])
+    distances = ca.sqrt(ca.sum1((balls[:3, :] - ca.repmat(centre, 1, count)) ** 2))
+    return ca.vertcat(centre, ca.mmax(distances + balls[3, :]), balls[4, 0], balls[5, -1])
 
 
 @cache
@@ -429,8 +430,9 @@ class SectionsInContact:
 
 def _meet(first: Matrix, second: Matrix, law: Matrix) -> Matrix:
     """Whether sections in balls, 6×k each, may push each other, 1×k."""
-    near = ca.sum1((first[:3, :] - second[:3, :]) ** 2) < (first[3, :] + second[3, :] + law[0]) ** 2
-    meet: Matrix = near * (second[5, :] - first[4, :] >= law[2])
+    squared_distance = ca.sum1((first[:3, :] - second[:3, :]) ** 2)
+    reach = first[3, :] + second[3, :] + law[0]
+    meet: Matrix = (squared_distance < reach**2) * (second[5, :] - first[4, :] >= law[2])
     return meet
 
 

@@ -239,7 +239,7 @@ class Grid:
     def element_of(self, X: FloatArray) -> Indices:
         """Element in which each abscissa of the rod lies; an end belongs to the element it ends."""
         inner = np.asarray(self.known_places[1:-1])
-        # From the left: an abscissa that equals a break stands before it.
+        # The search is from the left: an abscissa at a break stands before it.
         elements = np.searchsorted(inner, X, side="left")
         return elements.astype(np.int64)
 
@@ -264,7 +264,7 @@ class Grid:
         """
         if not any_symbolic([X, *self.places]):
             return fields @ ca.DM(self.interpolation_matrix(known(X)).T)
-        # In each element a series of Legendre polynomials, which have no poles at the nodes as barycentric weights do.
+        # A Legendre series in each element has no poles at the nodes, unlike barycentric weights.
         to_values = legendre_table(self._nodes_per_element, chebyshev.nodes(self.intervals))
         to_coefficients = ca.DM(np.linalg.inv(known(to_values)).T)
         abscissae = ca.MX(as_matrix(X))

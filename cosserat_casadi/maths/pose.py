@@ -99,8 +99,9 @@ def written_pose(position: Numbers, quaternion: Numbers) -> NumericPose | Pose:
 
 def numeric(pose: Pose) -> NumericPose:
     """The numbers of a pose with constant expressions."""
-    position, quaternion = (ca.evalf(ca.MX(ca.densify(part))).full()[:, 0] for part in (pose.position, pose.quaternion))
-    return NumericPose(np.asarray(position), np.asarray(quaternion))
+    stacked = ca.densify(ca.vertcat(ca.MX(pose.position), ca.MX(pose.quaternion)))
+    numbers = np.asarray(ca.evalf(stacked).full()[:, 0])
+    return NumericPose(numbers[:3], numbers[3:])
 
 
 IDENTITY = NumericPose(np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]))

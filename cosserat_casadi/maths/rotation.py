@@ -80,7 +80,7 @@ def hat(v: AnyMatrix) -> AnyMatrix:
         3×3, with structural zeros on the diagonal.
     """
     x, y, z = _rows(v, 3)
-    # Without an entry, so that CasADi does not carry a zero along.
+    # No entry is stored, so that CasADi does not carry a zero along.
     zero = ca.DM(1, 1)
     return ca.vertcat(
         ca.horzcat(zero, -z, y),
@@ -287,7 +287,7 @@ def matrix_to_quaternion(matrix: npt.ArrayLike) -> FloatArray:
     if m.shape != (3, 3):
         raise ValueError(f"a rotation matrix is 3×3, but the shape is {m.shape}")
     deviation = np.abs(m.T @ m - np.eye(3)).max()
-    # Written so that what is not a number is refused; a reflection passes (A.7), but its determinant is −1.
+    # This comparison refuses NaN; a reflection passes (A.7), but its determinant is −1.
     if not (deviation < ROTATION_TOLERANCE and np.linalg.det(m) > 0):
         raise ValueError(f"not a rotation matrix: {m.tolist()}")
     # Each column of 4 q qᵀ is q but for its length and sign; the longest one loses no digits.

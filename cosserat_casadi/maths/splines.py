@@ -116,7 +116,7 @@ def spline_basis(knots: FloatArray, X: Numbers) -> Numbers:
     first[0] = 1.0
     weights = as_matrix(first @ np.ones((1, X.shape[0])))
     for start, length, (_, *powers) in zip(knots[:-1], np.diff(knots), coefficients, strict=True):
-        # Each segment adds what the spline gains in it, up to X. At a knot the segment before it has the slope.
+        # Each segment adds the change of the spline in it, up to X. At a knot the segment before it has the slope.
         gone = ca.fmin(ca.fmax(0.0, as_matrix(X) - start), length)
         for degree, power in enumerate(powers, 1):
             weights = weights + ca.DM(power) @ (gone**degree).T
@@ -260,7 +260,8 @@ class HermiteCurve:
         """Integral of the curve from its first point to each, shape (n,)."""
         width = np.diff(self.abscissae)
         powers = np.column_stack([width, width**2 / 2, width**3 / 3, width**4 / 4])
-        return np.concatenate([[0.0], np.cumsum(np.sum(self._polynomials * powers, axis=1))])
+        of_intervals = np.sum(self._polynomials * powers, axis=1)
+        return np.concatenate([[0.0], np.cumsum(of_intervals)])
 
     @cached_property
     def _integral_at_zero(self) -> float:

@@ -264,7 +264,7 @@ class _Robot:
         solution = solve(self.scene)
         assert isinstance(solution, Solution), "tubes are refused before"
         if not solution.converged:
-            self._leave_out("start", "no equilibrium was found: the model begins unloaded, where its loops may be open")
+            self._leave_out("start", "no equilibrium was found: the model begins unloaded, and its loops may be open")
             return {}
         poses = {name: begin(solution) for name, begin in self.begins.items()}
         poses["world"] = IDENTITY
@@ -508,7 +508,7 @@ class _Robot:
             lower = -NO_STOP if joint.lower_stop is None else joint.lower_stop
             upper = NO_STOP if joint.upper_stop is None else joint.upper_stop
             attributes["range"] = _numbers([lower, upper])
-            self._leave_out(name, "its stops are as soft as constraints of MuJoCo are, and without restitution")
+            self._leave_out(name, "its stops are as soft as constraints of MuJoCo, and without restitution")
         effort = getattr(joint, joint.effort_key)
         if effort is not None:
             self._control(f"{name}.{joint.effort_key}", effort, "motor", joint=name)
@@ -748,14 +748,17 @@ class _Robot:
         for rod in scene.rods:
             properties = self.unloaded.rods[rod.name].properties
             if properties.beyond_hooke is not None:
-                told = "joints have the stiffness of each small strain alone: what a law adds, and couples, is missing"
+                told = (
+                    "joints have only the stiffness of each small strain: the rest of the law, and its coupling, is "
+                    "missing"
+                )
                 self._leave_out(rod.name, told)
             if properties.branches:
                 self._leave_out(rod.name, "stress that relaxes is missing")
             if properties.mass_damping is not None:
                 self._leave_out(rod.name, "damping in proportion to mass is missing")
         for name, least in self.light.items():
-            self._leave_out(name, f"has moments of inertia of {least:.1e} kg m² at least: MuJoCo moves nothing without")
+            self._leave_out(name, f"has moments of inertia of {least:.1e} kg m² or more: MuJoCo moves nothing without")
         if scene.velocities:
             self._leave_out("velocities", "the model begins at rest")
         for name in dict.fromkeys(motion.input for motion in scene.motions):
@@ -775,7 +778,7 @@ class _Robot:
 def _comment(left_out: Sequence[str]) -> str:
     lines = ["Written by cosserat_casadi. The keyframe 'scene' has the inputs of the scene as controls."]
     if left_out:
-        lines += ["What the model does not have as the scene has it:", *left_out]
+        lines += ["Parts in which the model differs from the scene:", *left_out]
     # XML comments may not contain two hyphens.
     return "\n".join(["", *(f"  {line}" for line in lines), ""]).replace("--", "−−")
 

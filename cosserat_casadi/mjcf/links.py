@@ -173,7 +173,8 @@ def _together(frame: NumericPose, lumps: Sequence[Lump]) -> Inertia:
     inertia = np.zeros((3, 3))
     for mass, pose, moments in seen:
         arm = pose.position - centre
-        inertia += pose.rotation @ moments @ pose.rotation.T + mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+        of_point_mass = mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+        inertia += pose.rotation @ moments @ pose.rotation.T + of_point_mass
     return Inertia(total, centre, inertia)
 
 

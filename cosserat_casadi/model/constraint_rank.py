@@ -90,7 +90,9 @@ def _problems(scene: scenes.Scene) -> tuple[tuple[Problem, ...], Problem | None]
     for placed in probe.constraints:
         upper = rows[: probe.multipliers(placed).stop - strains]
         if _rank(upper) < len(upper):
-            problem = f"over-constrains: {placed.what} is held already in a direction in which its rods cannot give"
+            problem = (
+                f"over-constrains {placed.what}: it is held already in a direction in which its rods cannot deform"
+            )
             return spins, Problem(placed.where, problem, remedy)
     return spins, None
 

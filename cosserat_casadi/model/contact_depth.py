@@ -78,10 +78,11 @@ def _layer_lies_apart(system: System, layer: ContactLayer) -> Matrix:
 
 def _pair_lies_apart(terms: PairTerms) -> Matrix:
     """Whether sections of rods that push each other are too far apart to show the error of their sum, 1×1."""
-    longest = [ca.mmax(side.sections.data[0, :]) for side in terms.sides]
-    radii = [ca.mmin(side.sections.data[1, :]) for side in (terms.sides[0], terms.sides[-1])]
-    half = half_of_stretch(radii[0] + radii[1], terms.pair.width)
-    return ca.MX(ca.mmax(ca.vertcat(*longest)) > LOOSEST_SPACING * half)
+    spacings = [ca.mmax(side.sections.data[0, :]) for side in terms.sides]
+    widest = ca.mmax(ca.vertcat(*spacings))
+    least_radii = [ca.mmin(side.sections.data[1, :]) for side in (terms.sides[0], terms.sides[-1])]
+    half = half_of_stretch(least_radii[0] + least_radii[1], terms.pair.width)
+    return ca.MX(widest > LOOSEST_SPACING * half)
 
 
 def _depth(system: System, layer: ContactLayer) -> Matrix:

@@ -104,7 +104,7 @@ class CableOfLength:
     @property
     def compliance(self) -> Compliance:
         """Compliance of a spring between its length and the given one, as soft as the rod."""
-        # The row of a cable that may go slack grows with its tension; that of another cable, −s, falls with it.
+        # The row of a cable that may go slack grows with its tension; the row of another cable, −s, falls with it.
         if self.may_go_slack:
             return Compliance(power=1, scale=self.softness)
         return Compliance(power=1, scale=-self.softness)

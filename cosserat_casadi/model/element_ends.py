@@ -72,8 +72,8 @@ def check_places(rod: str, ends: Sequence[float]) -> None:
     """
     for before, after in pairwise(ends):
         if after - before < CLOSEST:
-            problem = f"its elements would end at {before!r} and at {after!r}, too near each other to compute with"
-            remedy = "give what meets on the rod the same abscissa X, or move one"
+            problem = f"its elements would end at {before!r} and at {after!r}, too close to each other to compute with"
+            remedy = "give parts that meet on the rod the same abscissa X, or move one"
             raise SceneError(Problem(rod, problem, remedy))
 
 
@@ -151,7 +151,7 @@ def unmovable(name: str, nominal: scenes.Scene, scene: scenes.Scene) -> Iterator
                 problem = f"is at the end X = {place:g} of {rod.name!r}, which does not move along it"
                 yield Problem(name, problem, "give a place inside the rod, which is the default")
             elif not all(is_symbolic(other) and ca.is_equal(other, written) for other in together):
-                problem = f"is at X = {place:g} of {rod.name!r}, where something else is that does not move with it"
+                problem = f"is at X = {place:g} of {rod.name!r}, where another part is that does not move with it"
                 yield Problem(name, problem, "tie the two together, or give them places with an element between them")
 
 

@@ -215,7 +215,7 @@ def site_of(discrete: DiscreteScene, rod: str, load: scenes.LoadRecord) -> Site:
     else:
         nodes = grid.nodes_in(*member.span(load)) if at is None else np.array([grid.node_at(at)])
         X, interpolation = grid.nodes_at(nodes), np.eye(grid.size)[nodes]
-    # A function, since few loads ask for the unloaded poses, which need those of all carriers.
+    # The poses are a function, since few loads need them and they take the poses of all carriers.
     poses = partial(unloaded_poses, discrete, rod, interpolation)
     return Site(discrete_rod.properties, X, poses)
 
@@ -256,8 +256,8 @@ def _unloaded_base(discrete: DiscreteScene, rod: str) -> NumericPose | Pose:
         SceneError: parameters move the carrier of the rod.
     """
     if discrete.carrier_moves(rod):
-        problem = "is bound to where the unloaded rod was, whose carrier parameters move"
-        remedy = "name no length, base or intrinsic strain of what carries this rod"
+        problem = "holds to the place of the unloaded rod, whose carrier the parameters move"
+        remedy = "name no length, base or intrinsic strain of the carriers of this rod"
         raise SceneError(Problem(f"a load on {rod!r}", problem, remedy))
     record = discrete.records[rod]
     written = written_pose(*written_base_pose(record))

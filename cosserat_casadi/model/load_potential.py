@@ -41,7 +41,7 @@ def _has_potential_on_rod(
         return True
     member = EFFECTS[load.kind]
     data_size = member.data(load, site_of(discrete, rod, load)).shape[0]
-    # Sections turn about one axis of the world; those of a rod that is carried about may not.
+    # Sections turn about one axis of the world, unless a body carries the rod about.
     in_plane = discrete.unloaded.floating_base(rod) is None or discrete.unloaded.plane(rod) is not None
     one_axis = in_plane and len(discrete.rods[rod].properties.turning_axes) < 2
     return has_potential(member, load, values, data_size, one_axis=one_axis)

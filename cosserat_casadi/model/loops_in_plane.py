@@ -59,7 +59,7 @@ def closing_joints(unloaded: UnloadedScene) -> dict[int, FloatArray]:
     if all(joint.carries is None for joint in unloaded.scene.joints):
         return {}
     _, length = unloaded.units([])
-    # Rods come last: what holds a body in the plane without them leaves them free to bend.
+    # Rods come last: if other parts hold a body in the plane, rods stay free to bend.
     links = [*_links_of_bodies(unloaded), *_links_of_rods(unloaded)]
     closing: dict[int, FloatArray] = {}
     for normal in _normals(links):

@@ -287,7 +287,7 @@ class RubberLaw(Law[RecordType], ABC):
         shape = SHAPES[section.shape]
         keys = list(sizes_of(section))
         if shape.fibres(dict.fromkeys(keys, ca.SX(1.0))) is None:
-            problem = f"law = {self.kind!r} sums over fibres, and a section of shape {section.shape!r} says of none"
+            problem = f"law = {self.kind!r} sums over fibres, and a section of shape {section.shape!r} has none"
             raise SceneError(Problem(f"{of_rod.rod.name}.section", problem, "give its class a method fibres"))
         coefficients = self.coefficients(material)
         numbers = [material.youngs_modulus, *coefficients]

@@ -39,7 +39,7 @@ WIDTH = "give each {width}; or solve the scene, or leave them out"
 RELAXED = "take relaxed_contact(model) for the model; or give each {width}"
 """Remedy where exact contact is not supported in a problem at rest."""
 
-HELD = "the rod {!r} is free: at rest contact alone would have to hold it"
+HELD = "the rod {!r} is free: at rest only contact could hold it"
 """Problem of a free rod that may touch something exactly."""
 
 SUGGESTED = 5e-3
@@ -49,7 +49,7 @@ SUGGESTED = 5e-3
 def suggested_width(scene: scenes.Scene) -> str:
     """Sentence of a remedy that suggests a width: an example, and its effect on rods at rest."""
     width = SUGGESTED * min(float(rod.length) for rod in scene.rods)
-    return f"a width, such as {width:.1g} m: contact is smooth then, and rods at rest are off by about as much"
+    return f"a width, such as {width:.1g} m: contact is smooth then, and shifts rods at rest by about the width"
 
 
 def refuse_obstacles(scene: scenes.Scene, what: str, remedy: str = WIDTH) -> None:
@@ -65,7 +65,7 @@ def refuse_obstacles(scene: scenes.Scene, what: str, remedy: str = WIDTH) -> Non
     """
     refuse(exact_rods(scene, what))
     if scene.touches_exactly:
-        problem = f"{what} does not look for contact that is exact: its rods would pass through them"
+        problem = f"{what} finds no exact contact: its rods would pass through them"
         raise SceneError(Problem("obstacles", problem, remedy.format(width=suggested_width(scene))))
 
 
@@ -78,7 +78,7 @@ def exact_rods(scene: scenes.Scene, what: str) -> Iterator[Problem]:
     """
     for number, contact in enumerate(scene.rod_contacts):
         if contact.exact:
-            problem = f"{what} knows no contact of rods without a width"
+            problem = f"{what} has no contact of rods without a width"
             remedy = "leave exact out, for a contact that is smooth; or solve or simulate it, or export its motions"
             yield Problem(f"rod_contacts[{number}].exact", problem, remedy)
 
@@ -135,7 +135,7 @@ def _problems(discrete: DiscreteScene) -> Iterator[Problem]:
             yield from member.faults(obstacle, float(radii.max()))
             held = in_world
             if obstacle.body is not None:
-                # The pose of the body is unknown before the scene is solved, and so are the poses of what it carries.
+                # The poses of the body, and of the rods that it carries, are unknown before the scene is solved.
                 held = _held_by(discrete.scene, obstacle.body, properties)
             for how, (position, radius) in held.items():
                 depth = radius - float(member.function(obstacle)(position)[0])

@@ -65,10 +65,11 @@ def prices_of_effects(scene: scenes.Scene, progress: StageProgress | None = None
 
 def is_damped(scene: scenes.Scene) -> bool:
     """Whether a rod of the scene is damped, or contact or a joint dissipates energy."""
-    rods = any(rod.damping is not None for rod in scene.rods)
-    rods = rods or any(contact.friction for contact in scene.rod_contacts)
-    rods = rods or any(getattr(joint, key, 0.0) > 0.0 for joint in scene.joints for key in ("damping", "friction"))
-    return rods or any(obstacle.damping > 0.0 or obstacle.rubs for obstacle in scene.obstacles)
+    of_rods = any(rod.damping is not None for rod in scene.rods)
+    of_pairs = any(contact.friction for contact in scene.rod_contacts)
+    of_joints = any(getattr(joint, key, 0.0) > 0.0 for joint in scene.joints for key in ("damping", "friction"))
+    of_obstacles = any(obstacle.damping > 0.0 or obstacle.rubs for obstacle in scene.obstacles)
+    return of_rods or of_pairs or of_joints or of_obstacles
 
 
 def without_damping(scene: scenes.Scene) -> scenes.Scene:

@@ -269,7 +269,7 @@ def check_directions(placed: list[PlacedConstraint], unloaded: UnloadedScene) ->
     Raises:
         SceneError: numbers take a constraint out of the plane of its rods, or into it; every such constraint is named.
     """
-    problem = "holds other directions with these parameters, which take it out of the plane of its rods, or into it"
+    problem = "holds other directions with these parameters: they take it out of the plane of its rods, or into it"
     refuse(
         [
             Problem(own.where, problem, "build a scene for each value")

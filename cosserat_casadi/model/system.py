@@ -223,7 +223,7 @@ class System:
                 given = self.arguments.motion
                 assert given is not None, "asked for in motion"
                 if not self.discrete.moving:
-                    problem = "has stress that relaxes, and this model is of the scene at rest"
+                    problem = "has stress that relaxes, and this model describes the scene at rest"
                     raise SceneError(Problem(f"{name}.damping.prony", problem, "build the model with moving=True"))
                 flows = self.discrete.unknowns.slice_of(BlockKind.FLOW, name)
                 size = (motion.rod.size, branches)

@@ -171,13 +171,13 @@ def read_checkpoint(path: str | Path) -> Checkpoint | None:
     try:
         return Checkpoint.from_data(data)
     except (KeyError, TypeError, ValueError, IndexError) as error:
-        problem = f"{path} is of a motion that nothing goes on from: it has no state, or not all of one"
+        problem = f"no motion can go on from {path}: its state is missing or incomplete"
         raise SceneError(Problem(WHERE, problem, "write it with cosserat simulate SCENE --output")) from error
 
 
 def of_another_scene() -> SceneError:
     """The error of continuing a motion from the checkpoint of another scene."""
-    problem = "the motion that it would go on from is of another scene"
+    problem = "the motion to go on from has another scene"
     return SceneError(Problem(WHERE, problem, "give the scene of that motion"))
 
 

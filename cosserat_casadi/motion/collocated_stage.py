@@ -346,7 +346,7 @@ def motion_stage(
         what = f"{chosen.name} does not converge for supports, joints, carried rods and cables of given length"
         problems.append(Problem("method", what, "take Radau IIA, radau(2)"))
     if exact and not (chosen.stages == 1 and chosen.stiffly_accurate):
-        what = f"{chosen.name} throws back what meets an obstacle without restitution"
+        what = f"{chosen.name} throws rods and bodies back that meet an obstacle without restitution"
         problems.append(Problem("method", what, "take radau(1), or give each obstacle a width, m"))
     problems += exact_rods(model.scene, "a stage of a motion")
     if sections < 1:

@@ -26,7 +26,7 @@ THINNEST = 1e-3
 MOST_ENDS = 400
 """Most ends of steps at which rods are checked; with more steps every second, third, … is checked."""
 
-NOT_OF_RODS = "A motion of the discrete model was computed that rods cannot make."
+NOT_OF_RODS = "The computed motion of the discrete model is one that rods cannot make."
 """First sentence of the warning that a motion leads through an obstacle or a rod; more modes would not help."""
 
 CLOSER = 17
@@ -50,8 +50,11 @@ def untouchable(model: Model, simulation: Simulation | None) -> Iterator[Problem
     for of_rows in (False, True):
         named = dict.fromkeys(disk.name for disk in disks if disk.stands_for_entry == of_rows)
         if named:
-            what = f"exact contact in motion is of balls, and disks turn as they roll: {', '.join(named)}"
-            balls = "leave their thickness out, which makes them balls; or take [[disks]] and obstacles with a width, m"
+            what = (
+                "only balls touch exactly in motion, since disks turn as they roll; these are disks: "
+                f"{', '.join(named)}"
+            )
+            balls = "leave out their thickness, so that they are balls; or take [[disks]] and obstacles with a width, m"
             yield Problem("obstacles", what, remedy if of_rows else balls)
 
 
@@ -61,7 +64,7 @@ def _unfit_pairs(model: Model) -> Iterator[Problem]:
     for contact, rods in named_pairs(model.scene):
         if contact.exact and met & set(rods):
             names = ", ".join(rod for rod in rods if rod in met)
-            what = f"exact contact of rods is of rods whose ends meet no other rod's, and those of {names} do"
+            what = f"rods touch exactly only if their ends meet no end of another rod, and those of {names} do"
             yield Problem(f"rod_contacts.{contact.label}", what, "leave exact out, for a contact that is smooth")
 
 
@@ -103,7 +106,7 @@ def too_deep(history: History, duration: float) -> str:
         return ""
     return (
         f"At t = {times[worst]:.6g} s a rod is {depths[worst]:.3g} widths deep inside an obstacle or a rod, too deep "
-        "to be contact: give the contact more width or stiffness."
+        "for contact: give the contact more width or stiffness."
     )
 
 
@@ -140,8 +143,9 @@ def laid_down(history: History) -> list[str]:
         if event.kind == LAID_DOWN:
             times.setdefault((event.owner, event.obstacle), []).append(event.time)
     return [
-        f"Contacts of {owner!r} with {obstacle!r} changed over and over in next to no time ({len(found)} times, first "
-        f"at t = {found[0]:.6g} s): the rod was laid down there, and may have gone on otherwise."
+        f"Contacts of {owner!r} with {obstacle!r} changed over and over within almost no time ({len(found)} times, "
+        f"first at t = {found[0]:.6g} s): the motion goes on with the rod lying on it there; the true motion may "
+        "differ."
         for (owner, obstacle), found in times.items()
     ]
 
@@ -164,7 +168,7 @@ def told_inside(history: History, duration: float, deepest: float) -> str:
         return ""
     what = f"the body {worst.owner!r}" if worst.of_body else f"the section X = {worst.place:.4g} of {worst.owner!r}"
     return (
-        f"At t = {times[number]:.6g} s {what} is {worst.depth:.2g} of the "
-        f"length inside {worst.obstacle!r}, deeper than the tolerance: no contact was found there. A rod that "
-        "lies is less deep between the sections that touch with more of accuracy.modes."
+        f"At t = {times[number]:.6g} s {what} is {worst.depth:.2g} of the length inside {worst.obstacle!r}, deeper "
+        "than the tolerance: no contact was found there. Between the sections that touch, a lying rod sinks in less "
+        "with more accuracy.modes."
     )

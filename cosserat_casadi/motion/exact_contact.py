@@ -357,8 +357,8 @@ class ExactContacts:
         """End of a motion at which it stays undecided which contacts remain; the state is unchanged."""
         names = sorted({self.facings[touch.facing].touched for touch in touching})
         why = (
-            f"At t = {onset.before.time:.6g} s it is not decided which of {len(touching)} contacts with "
-            f"{', '.join(names)} remain."
+            f"At t = {onset.before.time:.6g} s the law of contact does not decide which of {len(touching)} contacts "
+            f"with {', '.join(names)} remain."
         )
         return Restart(onset.start(()), ContactPhase(), events=known.events, stalled=why)
 

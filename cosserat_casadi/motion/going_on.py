@@ -74,7 +74,7 @@ def checkpoint_of(start: StartOfMotion) -> Checkpoint | None:
         return found
     if isinstance(start, Motion):
         if start.end is None:
-            raise SceneError(Problem("start", "the motion was not started: nothing goes on from it", ""))
+            raise SceneError(Problem("start", "the motion did not start: no motion can go on from it", ""))
         return start.end
     return start if isinstance(start, Checkpoint) else None
 
@@ -108,7 +108,7 @@ def go_on(
     assert asked is not None, "checked"
     if not asked.duration > checkpoint.time:
         problem = f"{asked.duration:g} s is not beyond t = {checkpoint.time:g} s, where the motion goes on"
-        raise SceneError(Problem("simulation.duration", problem, "times go on: give the end of the whole motion"))
+        raise SceneError(Problem("simulation.duration", problem, "the time goes on: give the end of the whole motion"))
     start = resumed_start(model, checkpoint.strands[0].resume)
     simulator = Simulator(model, asked, start, "going on", tell, source, checkpoint, events)
     strands, before, apart = checkpoint.strands, np.inf, 0

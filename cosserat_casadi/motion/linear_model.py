@@ -207,7 +207,7 @@ class _Equations:
         stuck = left > UNHELD * np.abs(opened).max()
         if np.any(stuck):
             columns = [name for name, index in column_indices(self.model.inputs).items() if stuck[index]]
-            fault = f"constraints leave no room for {', '.join(columns)} to first order"
+            fault = f"constraints do not let {', '.join(columns)} change to first order"
             remedy = "admit the strain that gives way, or do not make it an input"
             raise SceneError(Problem("inputs", fault, remedy))
         return np.asarray(carried)

@@ -18,7 +18,7 @@ def check_simulation(model: Model, simulation: Simulation | None) -> None:
     problems = []
     if simulation is None:
         remedy = "add a table [simulation] with duration = 1.0 (s)"
-        problems.append(Problem("simulation", "missing: it says for how long to simulate", remedy))
+        problems.append(Problem("simulation", "missing: it says how long to simulate", remedy))
     problems += immovable(model)
     if simulation is not None and simulation.integrator == "gauss" and not all(model.discrete.unknowns.differential):
         what = "'gauss' does not converge for supports, joints, carried rods and cables of given length"

@@ -96,7 +96,7 @@ def message_of(history: History, outcome: MotionOutcome) -> str:
     reached = f"t = {history.end.time:.6g} s, with a step of {history.next_size:.3g} s"
     if outcome is MotionOutcome.SNAPPED:
         return f"{outcome.value} Reached: {reached}; the cable or joint is {', '.join(snapping(history))}."
-    violent = f"{outcome.value} Reached: {reached}; what moves most violently there is {most_violent(history)}."
+    violent = f"{outcome.value} Reached: {reached}; the largest acceleration there is that of {most_violent(history)}."
     return violent + whirled(history)
 
 
@@ -123,13 +123,13 @@ def whirled(history: History) -> str:
     without = {name for name, rod in history.model.discrete.rods.items() if rod.properties.rotary_inertia is None}
     if leg.start.massless > 0 and without:
         names = ", ".join(repr(name) for name in sorted(without))
-        return f" Nothing resists a spin about the axis of {names}: give rotary_inertia, kg m."
+        return f" {names} can spin about the tangent without resistance: give rotary_inertia, kg m."
     struck = {event.owner for event in leg.restart.events if event.kind == "impact"}
     rods = history.model.discrete.rods
     light = [repr(name) for name in rods if name in struck & without and TWIST in rods[name].properties.admitted]
     if not light:
         return ""
-    return f" A blow turns {', '.join(light)} about itself, and nothing resists: give it a rotary_inertia, kg m."
+    return f" A blow spins {', '.join(light)} about the tangent without resistance: give rotary_inertia, kg m."
 
 
 def most_violent(history: History) -> str:

@@ -145,34 +145,33 @@ FELT_AT_FRONTS = 0.3
 
 
 ERRATIC = (
-    "More exact steps do not bring the paths nearer to each other: after its impacts the motion hangs on rounding. "
-    "Damp the rod, or give a larger tolerance."
+    "The paths do not converge with smaller steps: after its impacts the motion depends on rounding. Damp the rod, or "
+    "give a larger tolerance."
 )
 """Sentence for a motion that does not converge with more exact steps."""
 
 
 UNDAMPED = (
-    "Its impacts send waves of all lengths along a rod without damping: on {fewer} and {more} modes the paths are "
-    "{distance:.2g} of the length apart, and on {most} they are not expected to meet the tolerance. Give the rod "
+    "Its impacts send waves of all lengths along a rod without damping. The paths on {fewer} and {more} modes differ "
+    "by {distance:.2g} of the length, and {most} modes are unlikely to meet the tolerance. Give the rod "
     "damping.retardation_time, the obstacle a width, or a larger tolerance."
 )
 """Sentence for a motion that does not converge with more modes."""
 
 
 WAVES = (
-    "What comes at once sends waves of all lengths along a rod without damping: on {fewer} and {more} modes the paths "
-    "are {distance:.2g} of the length apart. The tolerance is foreseen to ask for some {wanted:.0f} modes, and no more "
-    "than {most} are tried. Give loads the time that they take, the rod damping.retardation_time, or a larger "
-    "tolerance. Modes that accuracy.modes fixes are kept."
+    "Sudden loads send waves of all lengths along a rod without damping. The paths on {fewer} and {more} modes differ "
+    "by {distance:.2g} of the length. The tolerance needs about {wanted:.0f} modes, and {most} are the most tried. "
+    "Let loads grow over some time, give the rod damping.retardation_time, or a larger tolerance. Modes in "
+    "accuracy.modes stay fixed."
 )
 """Sentence for a motion whose waves need more modes than there are."""
 
 
 CHATTERS = (
-    "It strikes over and over: on {fewer} and {more} modes there are {before} and {after} impacts, and the paths are "
-    "{distance:.2g} of the length apart; on as many modes as the tolerance asks for there would be some "
-    "{foreseen:.0f}. Give the obstacle a width, the rod more damping, or a larger tolerance. Modes that "
-    "accuracy.modes fixes are kept."
+    "Parts strike over and over: {before} times on {fewer} modes, {after} times on {more}, and the paths differ by "
+    "{distance:.2g} of the length. The modes that the tolerance needs would give about {foreseen:.0f} impacts. Give "
+    "the obstacle a width, the rod more damping, or a larger tolerance. Modes in accuracy.modes stay fixed."
 )
 """Sentence for a motion whose impacts become too many before its modes are enough."""
 
@@ -861,8 +860,8 @@ def _interrupted(search: _Search) -> Motion:
         # Nothing was compared that tells it of this motion; steps of given size have no share of the tolerance.
         foreseen = TIME_SHARE * search.tolerance
         error = search.space_error + foreseen
-        modes = f"its modes leave an error of about {search.space_error:.2g} of the length"
-        told = f": {modes}, its steps about {foreseen:.2g} where they are as exact as those of like motions."
+        modes = f"the modes leave an error of about {search.space_error:.2g} of the length"
+        told = f": {modes}, its steps about {foreseen:.2g} if their errors are as small as those of similar motions."
     elif not np.isfinite(error):
         error = float("nan")
         told = ", and its error is not known."

@@ -27,28 +27,28 @@ Residual = Callable[..., FloatArray]
 
 UNLOADED = "At rest in the unloaded shape."
 SWINGS = (
-    "At rest in the unloaded shape, as a base is free or may swing. To begin in an equilibrium, give "
+    "At rest in the unloaded shape, since a base is free or swings. To begin in an equilibrium, give "
     'start = "equilibrium" in [simulation].'
 )
 EQUILIBRIUM = "At rest in the static equilibrium of the inputs at t = 0."
-HELD = "At rest in the static equilibrium of the inputs at t = 0 with free bases held, which are let go then."
-RESUMED = "From the end of the motion that was given, at t = {time:.6g} s."
-GIVEN = "At rest in the equilibrium that was given."
-ALONG = " A base or a length has a speed at t = 0: rods move along with it from the start on, nothing jerks them."
+HELD = "At rest in the static equilibrium of the inputs at t = 0 with free bases held; the motion releases them."
+RESUMED = "From the end of the given motion, at t = {time:.6g} s."
+GIVEN = "At rest in the given equilibrium."
+ALONG = " A base or a length has a speed at t = 0: rods move along with it from the start on, without a jerk."
 TOUCHES = (
     "The rods touch obstacles in the equilibrium of the inputs at t = 0, and on at most {modes} modes of a strain the "
     "search for such an equilibrium, with forces at sections, did not settle. Give "
     'another number of accuracy.modes, mostly a larger one, start = "unloaded", or other inputs at t = 0.'
 )
 GIVEN_TOUCHES = (
-    "The rods touch obstacles in the equilibrium that was given, and on at most {modes} modes of a strain the search "
-    "for such an equilibrium, with forces at sections, did not settle. Give "
-    "another number of accuracy.modes, mostly a larger one; the equilibrium that was given may stay."
+    "The rods touch obstacles in the given equilibrium, and on at most {modes} modes of a strain the search for such "
+    "an equilibrium, with forces at sections, did not settle. Give another number of accuracy.modes, mostly a larger "
+    "one; the given equilibrium may stay."
 )
 RODS_INSIDE = "Rods that touch each other exactly are inside each other in the unloaded shape: move them apart."
 FREE_TOUCHES = (
-    "The rods touch obstacles in the equilibrium of the inputs at t = 0 with free bases held, and a free base that is "
-    'let go in contact is no start: give start = "unloaded", or other inputs at t = 0.'
+    "The rods touch obstacles in the equilibrium of the inputs at t = 0 with free bases held, and no motion can "
+    'begin by the release of a base in contact: give start = "unloaded", or other inputs at t = 0.'
 )
 
 

@@ -155,7 +155,7 @@ became ever shorter.
 """
 
 
-STEPS_ALONE = "Its error is that of the time steps on the modes of the model; of a scene it is that of the modes too."
+STEPS_ALONE = "The estimated error is that of the time steps only. Simulate the scene for the error of its modes too."
 """Sentence on the error of a motion of a model."""
 
 
@@ -829,7 +829,7 @@ def not_started(model: Model, start: Start, tolerance: float | None = None) -> M
     no_state = np.zeros((0, model.size))
 
     def nowhere(time: float) -> MotionState:
-        raise ValueError(f"the motion was not started: it has no state at {time:g} s")
+        raise ValueError(f"the motion did not start: it has no state at {time:g} s")
 
     return Motion(
         model=model,

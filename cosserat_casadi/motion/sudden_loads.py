@@ -18,8 +18,8 @@ STIRRED = 1e-6
 """Initial displacement by strains, over the displacement by all unknowns, above which a rod is deformed."""
 
 AT_ONCE = (
-    "The motion starts out of balance: loads act at once from t = 0 on. Waves of all lengths run along the rods, which "
-    "modes resolve slowly."
+    "The motion starts out of balance: loads act at once from t = 0 on. They send waves of all lengths along the "
+    "rods, which converge slowly with more modes."
 )
 """Warning of loads that act suddenly at the start."""
 
@@ -58,7 +58,7 @@ def _jumping(name: str, times: list[float]) -> str:
     when = f"at {times[0]:g} s"
     if len(times) > 1:
         when = f"{len(times)} times from {times[0]:g} s to {times[-1]:g} s"
-    return f"{name} jumps {when}: waves of all lengths run along the rods, which modes resolve slowly."
+    return f"{name} jumps {when}: it sends waves of all lengths along the rods, which converge slowly with more modes."
 
 
 def _deforms(history: History) -> bool:

@@ -49,18 +49,17 @@ class MotionOutcome(Enum):
     NO_START = "No motion was computed: no state to start from was found."
     NOT_SOLVED = "The motion ended early: a step of the given size could not be solved; give a smaller one, or none."
     SNAPPED = (
-        "The motion ended early: a cable became taut and slack, or a joint hit a stop, over and over, or "
-        "had no motion to go on by: "
-        "damp the rod, or move more slowly."
+        "The motion ended early: a cable became taut and slack, or a joint hit a stop, over and over, or no motion "
+        "was possible: damp the rod, or move more slowly."
     )
     TOO_MANY_STEPS = (
-        "The motion ended early: at its pace the rest would take hundreds of thousands of steps. A load may be far "
-        "beyond the rod, or the tolerance too tight for what vibrates; damp the rod."
+        "The motion ended early: the rest would take hundreds of thousands of steps. A load may be far too large for "
+        "the rod, or the tolerance too tight for its vibrations; damp the rod."
     )
     CONTACT_UNSETTLED = "The motion ended early: contact did not settle."
     PATH_VANISHED = (
-        "A motion of the discrete model was computed, but the rod is bent so far on its way that the path of a tendon "
-        "has no length left in it: lessen the loads, or move the path nearer to the axis."
+        "A motion of the discrete model was computed, but the rod bends so far that the path of a tendon has no "
+        "length left in it: lessen the loads, or move the path nearer to the axis."
     )
     BEYOND_MATERIAL = (
         "A motion of the discrete model was computed, but on its way a strain, or the pressure in a chamber, is beyond "
@@ -311,7 +310,7 @@ class Motion(Result):
             ValueError: the motion does not reach this time.
         """
         if len(self.times) == 0:
-            raise ValueError("the motion has no state: it was not started")
+            raise ValueError("the motion has no state: it did not start")
         first = float(self.times[0])
         last = float(self.times[-1])
         # A nan compares as false with both ends, and is refused too.

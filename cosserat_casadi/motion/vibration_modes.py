@@ -59,10 +59,12 @@ ROUNDING = 1e-13
 """Least error estimate, relative to an eigenvalue."""
 
 
-WHILE_PRESSED = "So long as every contact presses, and nothing else touches: larger motions lift off and strike."
+WHILE_PRESSED = (
+    "The modes hold while every contact presses and nothing else touches: larger motions lift off and strike."
+)
 """Sentence on small motions of rods in exact contact."""
 
-ABOUT_REST = "They are about rest at the scene's values: the motion of {inputs} in [[motions]] is left aside."
+ABOUT_REST = "They are vibrations about rest at the scene's values, without the motion of {inputs} in [[motions]]."
 """Sentence on small motions of a scene whose inputs move: a rod with a rotating base has other frequencies."""
 
 
@@ -74,9 +76,9 @@ class ModesOutcome(Enum):
         "Modes of the discrete model were found, but not every frequency is known to the tolerance: "
         "ask for fewer, or allow a larger tolerance or more modes per strain."
     )
-    NOT_ESTIMATED = "Modes of the discrete model: how far the rods have others is not estimated."
-    NO_EQUILIBRIUM = "No modes: there is no equilibrium to move about."
-    MARGINAL_CONTACT = "No modes: a contact is neither pressed nor open, and only one side of each motion meets it."
+    NOT_ESTIMATED = "Modes of the discrete model: their distance from the modes of the rods is not estimated."
+    NO_EQUILIBRIUM = "No modes: there is no equilibrium to vibrate about."
+    MARGINAL_CONTACT = "No modes: a contact is closed without force, so that only one side of each vibration meets it."
 
     @property
     def label(self) -> str:
@@ -338,7 +340,7 @@ def modes_of(
     """
     if isinstance(subject, Solution):
         if values is not None:
-            raise ValueError("values stand beside an equilibrium, which has its inputs: leave them out")
+            raise ValueError("an equilibrium has its inputs already: leave the values out")
         return modes_at(subject, count, report=report)
     if isinstance(subject, Model):
         return modes_at(solve(subject, values, progress=progress), count, report=report)
@@ -481,10 +483,10 @@ def check_mass(motions: SmallMotions) -> None:
         SceneError: nothing may move, or nothing that may move has mass.
     """
     if not motions.free_mass.size:
-        fault = "nothing may move: supports, joints or contacts hold all of it"
+        fault = "nothing can move: supports, joints or contacts hold everything"
         raise SceneError(Problem("rods", fault, "leave something free, or take more modes"))
     if not np.any(motions.free_mass):
-        fault = "nothing that may move has mass"
+        fault = "nothing that can move has mass"
         remedy = "give materials a density, rods a linear_density, or bodies a mass"
         raise SceneError(Problem("rods", fault, remedy))
 
@@ -512,7 +514,7 @@ def stability_sentences(
         count = _motions(unsettled.size, "grows", "grow")
         sentences.append(f"Statically unstable: {count} without swinging, at up to {unsettled.real.max():.6g} 1/s.")
     elif solution.stable is False and not np.any(values == 0.0):
-        sentences.append("Statically unstable: what has no mass leaves the equilibrium at once.")
+        sentences.append("Statically unstable: massless parts leave the equilibrium at once.")
     fluttering = values[growing & swinging & believed]
     if fluttering.size:
         fastest = fluttering[np.argmax(fluttering.real)]

@@ -156,10 +156,12 @@ class Limits:
 class FitOutcome(Enum):
     """Outcome of a fit."""
 
-    CONVERGED = "No step lessens the misfit any more."
+    CONVERGED = "No step makes the misfit smaller."
     AT_KINK = "The misfit is least where its derivatives jump."
     MAX_ITERATIONS = "The iterations ran out before the misfit was least."
-    STALLED = "No step that can be followed lessens the misfit, though its gradient is not zero."
+    STALLED = (
+        "No step along which equilibria can be followed makes the misfit smaller, though its gradient is not zero."
+    )
 
 
 @dataclass(frozen=True)
@@ -258,7 +260,7 @@ class ArrowStep:
         left = []
         eliminations = []
         for triangle, of_block in zip(self._triangles, self.of_blocks(damping), strict=True):
-            # What no row sees, or a bound holds, would take a row of the others with it: it gets one of its own.
+            # Unknowns that no row sees, or that a bound holds, would make the system singular: each gets its own row.
             unseen = ~np.any(triangle[:, :k], axis=0)
             added = np.zeros((k, k + n + 1))
             added[:, :k] = np.diag(np.where(unseen, 1.0, of_block))
@@ -579,7 +581,7 @@ class ArrowFit(Generic[StateType]):
                 if ended is not False:
                     return ended
         elif search.damping < BACK_OFF * LARGEST_DAMPING:
-            # Far beyond what the linear model can say: come back in fewer tries.
+            # This is far beyond the range of the linear model: come back in fewer tries.
             search.damping *= BACK_OFF
         return self._more_damping(search, arrow)
 
@@ -619,7 +621,7 @@ class ArrowFit(Generic[StateType]):
         predicted = arrow.decrease(values - search.values)
         state = self.problem.at(*self._parted(values), search.state)
         cost = np.inf if state is None else self._cost(values, state)
-        # What is not finite is no decrease.
+        # A number that is not finite is no decrease.
         if state is None or not search.cost - cost > SUFFICIENT * predicted:
             search.along *= BACK_OFF
             return False

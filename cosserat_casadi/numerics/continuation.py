@@ -204,7 +204,7 @@ def follow(
 
         trial = newton(path.at(target), current.x + predicted, limits.correction(target))
         iterations += trial.iterations
-        # On the path, and not on some other.
+        # The point must be on this path, not on another.
         accepted = trial.outcome is Outcome.CONVERGED and not trial.damped
         accepted = accepted and _is_small(path, trial.x - current.x - predicted, predicted)
         if not accepted or not path.admitted((current.x, current.t), (trial.x, target)):
@@ -330,7 +330,7 @@ def _stalled(path: Path, last: _Point, limits: ContinuationSettings, iterations:
     """Result at the last point, which was corrected inexactly, after Newton's method at that point."""
     end = newton(path.at(last.t), last.x, limits.newton)
     if not _stays(path, last, end):
-        # What Newton's method leads to is not the end of this path.
+        # Newton's method would lead to the end of another path.
         end = replace(last.correction, iterations=end.iterations)
     return _ended(replace(end, outcome=Outcome.LOAD_STALLED), iterations + end.iterations, last.t)
 

@@ -145,7 +145,7 @@ def descend(energy: Energy, start: FloatArray, side: float, settings: DescentSet
 
         step = model.step(radius, side)
         foreseen, actual = model.change(step), energy.change(x, step)
-        # Where no decrease is foreseen, or a number is not finite, none has come about.
+        # There is no decrease if none is predicted, or a number is not finite.
         agreement = actual / foreseen if foreseen < 0.0 and np.isfinite(actual) else -1.0
         if agreement > ACCEPT_ABOVE:
             x = x + step

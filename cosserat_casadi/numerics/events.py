@@ -168,7 +168,7 @@ def _limit_points(arc: Arc) -> list[Event] | None:
 
 def _monitor_zeros(arc: Arc) -> list[ArcPoint] | None:
     """Find the zeros of the numbers of the monitor, one by one; None if one cannot be computed."""
-    # What is zero at both ends belongs to a symmetry.
+    # A value that is zero at both ends belongs to a symmetry.
     neutral = min(_count_neutral(arc.start.spectrum), _count_neutral(arc.end.spectrum))
     spectra = [_without_neutral(point, neutral) for point in (arc.start, arc.end)]
     fewer, more = sorted(int(np.sum(spectrum < 0.0)) for spectrum in spectra)

@@ -30,7 +30,7 @@ def solve_given_step(run: StepRun) -> StageSolution | StepOutcome:
     if longest is not None and share == 1.0:
         return longest
     if longest is not None and solution is StepOutcome.SINGULAR:
-        # The matrices are so at the given size alone.
+        # Only the matrices of the given size are singular.
         return StepOutcome.NOT_SOLVED
     return solution
 

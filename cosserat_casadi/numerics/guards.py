@@ -141,7 +141,7 @@ def _dip(
             end = inner[1]
             inner = [start + GOLDEN * (end - start), inner[0]]
             values = [value(inner[0]), values[0]]
-        # What is left is too short to come to zero in.
+        # The remaining time is too short for a zero.
         if min(values) > steepest * (end - start):
             return None
     return None

@@ -28,8 +28,8 @@ class StepOutcome(Enum):
     )
     INTERRUPTED = "The motion was computed in part: it was interrupted."
     TOO_MANY_STEPS = "The motion was computed in part: its steps are so short that hundreds of thousands were needed."
-    STALLED = "The motion was computed to where none of its equations go on."
-    GUARDED = "The motion was computed to where it goes on under other equations."
+    STALLED = "The motion was computed to a time beyond which none of its equations hold."
+    GUARDED = "The motion was computed to a time from which on other equations hold."
 
 
 @dataclass(frozen=True)

@@ -226,7 +226,7 @@ def newton(equations: Equations, start: FloatArray, settings: NewtonSettings) ->
 
 def _outcome_before_step(iterate: _Iterate, settings: NewtonSettings) -> Outcome | None:
     """Outcome of the solve at an iterate; None if another step is due."""
-    # Beside unknowns without a finite norm every residual would be small.
+    # If the norm of the unknowns is not finite, every residual would count as small.
     scale = _scale(iterate.x)
     if not np.isfinite(iterate.norm) or not np.isfinite(scale):
         return Outcome.NOT_FINITE

@@ -24,14 +24,14 @@ class Outcome(Enum):
         "An equilibrium of the discrete model was found, but it is not resolved by its modes and nodes, or its steps: "
         "allow more of them, or a larger tolerance."
     )
-    NOT_IN_EQUILIBRIUM = "The unknowns are no equilibrium for these inputs: solve first."
+    NOT_IN_EQUILIBRIUM = "The unknowns are not an equilibrium at these inputs: solve first."
     LOST_TRACK = (
-        "The solution of the last turn could not be followed to these inputs within the bounds of one turn: "
-        "move the inputs less in a turn, or solve anew."
+        "One turn could not follow the solution of the last turn to these inputs within its bounds: move the inputs "
+        "less in a turn, or solve anew."
     )
     PATH_VANISHED = (
-        "No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond "
-        "that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis."
+        "No equilibrium of the rod: it bends so far that the path of a tendon has no length left in it, and further "
+        "bending would turn the matter inside out: lessen the loads, or move the path nearer to the axis."
     )
     BEYOND_MATERIAL = (
         "No equilibrium of the rod: a strain, or the pressure in a chamber, is beyond where its law holds, or a "
@@ -42,8 +42,8 @@ class Outcome(Enum):
         "it: keep it in the plane, or admit the other bending and torsion of the rods."
     )
     CONTACT_UNSETTLED = (
-        "No equilibrium found: of the contacts with obstacles that were tried, none had rods outside the obstacles "
-        "and forces that only push."
+        "No equilibrium found: no set of contacts that was tried leaves rods outside the obstacles with forces that "
+        "only push."
     )
     OUT_OF_RANGE = (
         "A translation is below zero or above the length of its tube, or no tube stands out of the plate: nothing was "

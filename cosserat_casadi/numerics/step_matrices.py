@@ -151,7 +151,7 @@ def condensed_inverse(matrix: npt.NDArray[Any], eliminated: npt.NDArray[np.intp]
         return scaled_inverse(matrix)
     kept = np.delete(np.arange(len(matrix)), eliminated)
     pivots = np.diag(matrix)[eliminated]
-    # What an eliminated entry follows the kept ones by, and what of its row goes into theirs.
+    # Factors by which an eliminated entry follows the kept ones, and by which its row enters their rows.
     follows = -matrix[np.ix_(eliminated, kept)] / pivots[:, None]
     passed = -matrix[np.ix_(kept, eliminated)] / pivots
     complement = matrix[np.ix_(kept, kept)] + matrix[np.ix_(kept, eliminated)] @ follows

@@ -196,7 +196,8 @@ class StepRun:
         """Whether F is finite at the start of the step and straight on from it, so that iterates cause a failure."""
         now = self.now
         straight_on = Instant(now.time + self.size, now.x + self.size * now.v, now.v, now.a)
-        return all(bool(np.all(np.isfinite(self.equations.residual_at(instant)))) for instant in (now, straight_on))
+        residuals = [self.equations.residual_at(instant) for instant in (now, straight_on)]
+        return bool(np.isfinite(residuals).all())
 
     def guess(self) -> FloatArray:
         """First iterate of the stages, from the polynomial of the step before, or from the start."""

@@ -45,16 +45,16 @@ class PathOutcome(Enum):
     MAX_STEPS = "The path was not followed further: the steps ran out before factor 1."
     TURNED_BACK = "The path led back: its factor fell below -1."
     CLOSED = "The path is closed: it came back to its start without reaching factor 1."
-    NO_BIFURCATION = "No branch: the path reached its end before the bifurcation to leave at."
+    NO_BIFURCATION = "No branch: the path ended before the chosen bifurcation."
     NO_BRANCH = "No branch: none was found at the bifurcation."
-    CONTACT_UNSETTLED = "The path could not be followed further: no arrangement of contacts was found to go on with."
+    CONTACT_UNSETTLED = "The path could not be followed further: the search found no set of contacts to go on with."
     UNRESOLVED = (
         "The path of the discrete model reached its end, but the rod is not resolved to the tolerance asked for: "
         "fix more modes and nodes, or allow a larger tolerance."
     )
     PATH_VANISHED = (
-        "The rod cannot follow the path of the discrete model: it is bent so far that a tendon has no length left "
-        "along it."
+        "The rod cannot follow the path of the discrete model: it bends so far that a tendon has no length left along "
+        "it."
     )
     BEYOND_MATERIAL = (
         "The rod cannot follow the path of the discrete model: a strain, or the pressure in a chamber, is beyond "
@@ -156,7 +156,7 @@ def extend(curve: Curve, traced: Trace, step: float, leave_at: int, guard: Guard
     if events is None and step > SEPARATE:
         return _halved(traced, step, limits.shortest)
 
-    # A step may pass the load factor 1; what lies beyond is not asked for.
+    # A step may pass the load factor 1; the path beyond does not count.
     end = _end(arc)
     if guard is not None:
         guarded = guard(arc, end)
@@ -167,7 +167,7 @@ def extend(curve: Curve, traced: Trace, step: float, leave_at: int, guard: Guard
     passed = [event for event in events or [] if event.point.length <= end.length]
     departure = _departure(traced, passed, abs(leave_at))
     if departure is not None:
-        # What lies beyond the bifurcation on this curve is none of the branch's.
+        # The curve beyond the bifurcation does not belong to the branch.
         _leave(curve, traced, passed[: departure + 1], 1 if leave_at > 0 else -1)
         return limits.first
     traced.points.append(end)

@@ -23,7 +23,7 @@ class CapsuleObstacle(Obstacle[Capsule]):
         start = np.asarray(obstacle.start)
         axis = np.asarray(obstacle.end) - start
         from_start = point - ca.DM(start)
-        # Beyond the ends of the axis its ends are nearest.
+        # The ends of the axis are nearest to points beyond them.
         share = ca.fmin(ca.fmax(ca.dot(ca.DM(axis), from_start) / float(axis @ axis), 0.0), 1.0)
         return rounded_norm(from_start - share * ca.DM(axis), obstacle.radius) - obstacle.radius
 

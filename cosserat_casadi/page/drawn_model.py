@@ -89,9 +89,11 @@ def drawn_layout(model: Model) -> list[dict[str, Any]]:
 def drawn_numbers(wanted: Model, solution: Solution) -> FloatArray:
     """The drawn parts of an equilibrium, shape (k,), in the layout of a model with a subset of the solution's loads."""
     arguments = Arguments(ca.DM(solution.x), ca.DM(solution.inputs))
-    found = {part.key: part.numbers for part in drawn_parts(System(solution.model.discrete, arguments))}
-    parts = [ca.vec(ca.densify(found[part.key])) for part in _symbolic_parts(wanted)]
-    return np.asarray(ca.evalf(ca.vertcat(*parts)).full()[:, 0])
+    system = System(solution.model.discrete, arguments)
+    numbers = {part.key: part.numbers for part in drawn_parts(system)}
+    drawn = [ca.densify(numbers[part.key]) for part in _symbolic_parts(wanted)]
+    stacked = ca.vertcat(*map(ca.vec, drawn))
+    return np.asarray(ca.evalf(stacked).full()[:, 0])
 
 
 def _symbolic_parts(model: Model) -> Iterator[Drawn]:

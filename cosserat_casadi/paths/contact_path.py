@@ -133,8 +133,8 @@ class ContactPath(EquilibriumPath):
                     if abs(place - section) < AT_SECTION:
                         return (
                             f" The contact of {touch.owner!r} with {touch.obstacle!r} has come to X = {section:.6g}, "
-                            "where a load or another rod acts: a place is not followed past there. A solve beyond "
-                            "finds it anew."
+                            "where a load or another rod acts: a path does not follow a contact past such a section. "
+                            "A solve at larger factors finds it anew."
                         )
         return ""
 

@@ -123,12 +123,12 @@ def follow(
         return follow_path(subject, name, value, values, **options)
     if isinstance(subject, TubeFunctions) or subject.tubes:
         if options.pop("branch", 0):
-            problem = "is for rods: a path of tubes goes straight on"
+            problem = "needs a scene of rods: a path of tubes goes straight on"
             raise SceneError(Problem("--branch", problem, "leave it out"))
         options.pop("report", None)
         return follow_tubes(subject, name, value, values, **options)
     if options.pop("first", None) is not None:
-        problem = "is for concentric tubes, and for friction on the modes and nodes of a model"
+        problem = "needs concentric tubes, or friction on the modes and nodes of a model"
         raise SceneError(Problem("first", problem, "leave it out, or follow the model of a path"))
     return _follow_refined(subject, name, value, values, **options)
 

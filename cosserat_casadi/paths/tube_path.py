@@ -190,7 +190,7 @@ def _check_first(robot: Robot, first: TubeSolution, values: Values) -> None:
     if values is not None:
         raise SceneError(Problem("first", "stands beside values", "its inputs are where the path begins"))
     if first.robot.columns != robot.columns:
-        problem = "is of tubes or loads with other names"
+        problem = "has tubes or loads with other names"
         raise SceneError(Problem("first", problem, f"inputs of the scene: {', '.join(robot.columns)}"))
 
 

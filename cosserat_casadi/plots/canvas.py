@@ -247,10 +247,11 @@ class Canvas:
         """Zoom at which a box with these sides fills its panel up to the labels."""
         x, y, z = BOX * widths / np.linalg.norm(widths)
         sine, cosine = abs(np.sin(AZIMUTH)), abs(np.cos(AZIMUTH))
-        seen = np.array([x * sine + y * cosine, z * np.cos(ELEVATION) + (x * cosine + y * sine) * np.sin(ELEVATION)])
+        seen_width = x * sine + y * cosine
+        seen_height = z * np.cos(ELEVATION) + (x * cosine + y * sine) * np.sin(ELEVATION)
         sides = self.axes.get_position().size * self.axes.figure.get_size_inches()
         room = PANEL * (sides - 2 * (SMALL_MARGIN if self.small else MARGIN)) / sides.min()
-        return float((room / seen).min())
+        return float((room / (seen_width, seen_height)).min())
 
 
 def add_canvas(

@@ -213,9 +213,9 @@ def _stability(path: EquilibriumPath) -> FloatArray:
 
 def runs(styles: npt.NDArray[Any]) -> list[tuple[int, int, int]]:
     """Pieces of equal style as (start, stop, style); adjacent pieces share a point, without a gap."""
-    cuts = [0, *(np.flatnonzero(np.diff(styles)) + 1).tolist(), len(styles)]
-    pieces = pairwise(cuts)
-    return [(start, min(stop + 1, len(styles)), int(styles[start])) for start, stop in pieces if stop > start]
+    count = len(styles)
+    cuts = [0, *(np.flatnonzero(np.diff(styles)) + 1).tolist(), count]
+    return [(start, min(stop + 1, count), int(styles[start])) for start, stop in pairwise(cuts) if stop > start]
 
 
 def _way_words(path: EquilibriumPath) -> str:

@@ -118,7 +118,7 @@ class StrainDensityOnRod(Conjugate):
         pattern = ca.Sparsity.triplet(6, 1, present, first_column)
         strain = ca.SX.sym("strain", pattern)
         data = ca.SX.sym("data", self.quantity.data.shape[0])
-        # Called with symbols once; the map below evaluates what is differentiated here.
+        # The function is called with symbols once; the map below evaluates the derivatives.
         density = self.quantity.density(strain, data)
         gradient = ca.jacobian(density, strain).T
         second = ca.vec(ca.jacobian(gradient, strain))

@@ -23,7 +23,6 @@ from cosserat_casadi.scene.constraint_records import (
     SupportRecord,
 )
 from cosserat_casadi.scene.disk_record import Disks
-from cosserat_casadi.scene.exact_contact_scene import with_exact_contact
 from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.flow_record import Flow
 from cosserat_casadi.scene.foundation_record import Foundation
@@ -46,7 +45,7 @@ from cosserat_casadi.scene.measurements import Measurement
 from cosserat_casadi.scene.motion_records import InputMotion
 from cosserat_casadi.scene.obstacle_records import OBSTACLES, Capsule, Lumen, Obstacle, ObstacleRecord, Plane, Sphere
 from cosserat_casadi.scene.parameter_records import NamedNumbers
-from cosserat_casadi.scene.reading import parse_scene, read_scene, scene_from_dict
+from cosserat_casadi.scene.reading import parse_scene, read_scene, scene_from_dict, with_exact_contact
 from cosserat_casadi.scene.rod_contact_record import RodContact
 from cosserat_casadi.scene.rod_records import (
     Annulus,

@@ -115,7 +115,7 @@ shape = true
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """Refuse keys that have no meaning without modes, nodes or rotation for all rods."""
         if "chosen_for" in given and "modes" not in given:
-            yield Fault(("chosen_for",), "stands without modes", "leave it out: it says what modes were chosen for")
+            yield Fault(("chosen_for",), "stands without modes", "leave it out: it holds ranges of chosen modes")
         if "sections" in given and "nodes" not in given:
             yield Fault(("sections",), "stands without nodes", "give modes and nodes, or leave it out")
         if given.get("of_rods") and not {"modes", "nodes", "rotation"} <= given.keys():

@@ -189,10 +189,10 @@ offset = [1.5e-3, 0.0]
         yield from one_of("offset", "helix", given)
         # Only an unknown tension can have zero as its lower bound.
         if given.get("slack") is True and "length" not in given:
-            yield Fault(("slack",), "is for a tendon of given length", "leave it out: a given tension is what it is")
+            yield Fault(("slack",), "is for a tendon of given length", "leave it out: the tension is given")
         if "length" not in given:
             of_length = ("axial_stiffness", "winch_stiffness", "pretension")
-            remedy = "leave it out: a given tension is what it is"
+            remedy = "leave it out: the tension is given"
             yield from refused_keys(given, of_length, "is for a tendon of given length", remedy)
         elastic = "axial_stiffness" in given or "winch_stiffness" in given
         if "pretension" in given and not elastic:
@@ -381,9 +381,7 @@ profile = { base = 1.0, tip = 0.2 }
         rod = scene.table_named("rods", given.get("rod"))
         law = table_of(rod.get("material")).get("law", "linear")
         if "curvature" in given and (law != "linear" or "stiffness_matrix" in rod):
-            yield Fault(
-                ("curvature",), "is for a rod with one stiffness for each strain", "give the moment that it has"
-            )
+            yield Fault(("curvature",), "is for a rod with one stiffness for each strain", "give its moment")
 
     def parameter_refusal(self, key: str) -> tuple[str, str] | None:
         """Knots cannot be parameters."""

@@ -72,7 +72,7 @@ class SupportRecord(Entry):
         support = sound(cls, given)
         if rod is None or support is None:
             return
-        # The base of a carried or free rod is an unknown: the model finds out what its tip reaches.
+        # The base of a carried or free rod is an unknown: the model checks the reach of its tip.
         if rod.base.rod is not None or rod.base.free:
             return
         for fault in out_of_reach(rod, support.position, support.orientation):
@@ -453,18 +453,18 @@ class AxisJoint(JointRecord):
         yield from super().conflicts(given)
         if cls.coordinate_key in given:
             acting = (cls.effort_key, "stiffness", "rest", "damping", "friction", *STOP_KEYS)
-            remedy = "which is prescribed: leave one of them out"
+            remedy = "a drive prescribes it: leave one of them out"
             yield from refused_keys(given, acting, f"stands beside {cls.coordinate_key}", remedy)
         if "rest" in given and "stiffness" not in given:
             yield Fault(("stiffness",), "missing", "rest is where a spring is unloaded")
         if "slip_rate" in given and "friction" not in given:
-            yield Fault(("slip_rate",), "is of friction, and the joint has none", "give it friction")
+            yield Fault(("slip_rate",), "belongs to friction, and the joint has none", "give it friction")
         if not any(stop in given for stop in STOP_KEYS):
             remedy = "give lower_stop, upper_stop or both"
             of_stops = ("restitution", "stop_stiffness")
-            yield from refused_keys(given, of_stops, "is of a stop, and the joint has none", remedy)
+            yield from refused_keys(given, of_stops, "belongs to a stop, and the joint has none", remedy)
         if "restitution" in given and "stop_stiffness" in given:
-            problem = "stands beside stop_stiffness, and an elastic stop gives back what it took"
+            problem = "stands beside stop_stiffness, and an elastic stop returns all energy"
             yield Fault(("restitution",), problem, "leave one of them out")
         lower, upper = (given.get(key) for key in STOP_KEYS)
         if isinstance(lower, int | float) and isinstance(upper, int | float) and not lower < upper:

@@ -210,7 +210,7 @@ def _contents(annotation: Any) -> Family[Any] | type[Record] | None:
         for entry in annotation.__metadata__:
             if isinstance(entry, Family):
                 return entry
-    # Optional values, lists and unions: what they hold stands one level down.
+    # The records in optional values, lists and unions stand one level down.
     for argument in get_args(annotation):
         contents = _contents(argument)
         if contents is not None:

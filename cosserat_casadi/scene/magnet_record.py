@@ -98,7 +98,7 @@ field = [0, 0.02, 0]
         if "body" in given and "magnetisation" in given:
             yield Fault(("magnetisation",), "is of a rod", "give the moment of the body's magnet, A m²")
         if "at" in given and "moment" not in given:
-            yield Fault(("at",), "stands without moment", "a magnetised rod is so all along")
+            yield Fault(("at",), "stands without moment", "a magnetised rod is magnetised along its whole length")
         if "at" in given and "body" in given:
             yield Fault(("at",), "is a section of a rod", "position is the point of a body")
         if "position" in given and "body" not in given:

@@ -35,7 +35,7 @@ sigma = 1e-3
 
     column: str | None = Field(None, description="name of the column; without one it is shift in every row")
     scale: Number = Field(1.0, description="factor on the cells, such as 9.81e-3 for grams that hang, without unit")
-    shift: Number = Field(0.0, description="what is added to the scaled cells, in the unit of the input, or s")
+    shift: Number = Field(0.0, description="addend of the scaled cells, in the unit of the input, or s")
 
 
 def _as_input_column(value: Any) -> Any:
@@ -79,7 +79,7 @@ class MeasurementRecord(Entry):
 
     if TYPE_CHECKING:
         quantity: str  # each member declares its own word, where it stands among its keys
-    name: str | None = Field(None, description="what results call it; the file and the quantity when left out")
+    name: str | None = Field(None, description="its name in results; the file and the quantity when left out")
     file: str = Field(description="CSV file with a header, a row for each measured case, relative to the scene's file")
     # The class attribute `inputs` of an entry names fields that may stay free: here none.
     set_inputs: Annotated[dict[str, MeasuredInput], AfterValidator(HashedTable)] = Field(
@@ -89,14 +89,14 @@ class MeasurementRecord(Entry):
         "and shift",
     )
     columns: Annotated[tuple[str, ...], NotEmpty()] = Field(
-        description="names of the columns of the quantity in their order; '' for what was not measured"
+        description="names of the columns of the quantity in their order; '' for a number that was not measured"
     )
     scale: Component = Field(
         1.0, description="factor on the cells, such as 1e-3 for mm, without unit; a number, or one for each column"
     )
     shift: Component = Field(
         0.0,
-        description="what is added to the scaled cells, in the unit of the quantity; a number, or one for each column",
+        description="addend of the scaled cells, in the unit of the quantity; a number, or one for each column",
     )
     sigma: PositiveComponent = Field(
         description="standard deviation of one entry, in the unit of the quantity; a number, or one for each entry"
@@ -124,7 +124,7 @@ class MeasurementRecord(Entry):
         if key in self.of_sensor:
             return super().parameter_refusal(key)
         known = " or ".join(self.of_sensor) or "none of its numbers"
-        return "is what the table is read with", f"of this measurement {known} may be unknown"
+        return "serves to read the table", f"of this measurement {known} may be unknown"
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
@@ -134,7 +134,7 @@ class MeasurementRecord(Entry):
         if isinstance(columns, list) and columns:
             if len(columns) != count:
                 problem = f"must have {counted(count, 'column')}, got {len(columns)}"
-                yield Fault(("columns",), problem, f"{', '.join(cls.entries)}; '' for what was not measured")
+                yield Fault(("columns",), problem, f"{', '.join(cls.entries)}; '' for a number that was not measured")
             elif not any(columns):
                 yield Fault(("columns",), "names no column", "leave the measurement out")
         for key, wanted in (("scale", count), ("shift", count), ("sigma", len(cls.differences))):
@@ -142,7 +142,7 @@ class MeasurementRecord(Entry):
             if got > 1 and got != wanted:
                 yield Fault((key,), f"must be 1 number or {wanted}, got {got}")
         if 0 in numbers_of(given.get("scale")):
-            yield Fault(("scale",), "must not be 0", "'' in columns is for what was not measured")
+            yield Fault(("scale",), "must not be 0", "'' in columns stands for a number that was not measured")
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
@@ -176,7 +176,7 @@ class MovingMeasurement(MeasurementRecord):
             yield Fault(("time",), "names no column, and all rows would be at one time", "name the column of the times")
         if scene.get("simulation") is None:
             remedy = "add a table [simulation] with duration = 1.0 (s), or leave time out"
-            yield Fault(("time",), "is of a motion, and the scene has none", remedy)
+            yield Fault(("time",), "needs a motion, and the scene has none", remedy)
         for name in table_of(given.get("inputs")):
             mover = table_that_moves(name, scene)
             if mover is not None:

@@ -118,7 +118,7 @@ def _wave_faults(motion: InputMotion, moving: _Moving, entries: int) -> Iterator
         problem = f"travels along a rod, and {motion.input} has one value"
         yield Fault(("wave",), problem, "move an input of Legendre coefficients, such as the profile of a muscle")
     elif "knots" in moving.table:
-        problem = f"is of Legendre coefficients, and {motion.input} has values at knots"
+        problem = f"has Legendre coefficients, and {motion.input} has values at knots"
         yield Fault(("wave",), problem, "leave the knots out, or move the values by a table of times and values")
     elif motion.entry_count != components:
         yield Fault(("amplitude",), f"must have a number for each of {components} components")

@@ -196,10 +196,10 @@ class ObstacleRecord(Entry):
         yield from _misplaced_on_body(given)
         if "width" in given:
             if "restitution" in given:
-                problem = "is of impacts, which a contact that is smooth does not have"
+                problem = "describes impacts, which a smooth contact does not have"
                 yield Fault(("restitution",), problem, "give damping, s/m, or leave out the width")
             return
-        problem = "is of a contact that is smooth: without width contact is exact"
+        problem = "describes a smooth contact, and contact without a width is exact"
         yield from refused_keys(given, SMOOTH_KEYS[1:], problem, "give width, m, or leave it out")
 
     @classmethod
@@ -209,7 +209,7 @@ class ObstacleRecord(Entry):
         exact = "width" not in given
         if exact and any("width" in other for _, other in scene.tables("obstacles")):
             problem = (
-                "missing: other obstacles have one, and contact is exact with all obstacles of a scene or with none"
+                "missing: other obstacles have a width, and contact is exact with all obstacles of a scene or with none"
             )
             yield Fault(("width",), problem, "give it here as well, m, or leave it out everywhere")
         yield from _unfit_bodies(given, scene)
@@ -229,11 +229,11 @@ def _misplaced_on_body(given: Table) -> Iterator[Fault]:
         return
     if "rods" not in given:
         # The rods that hold the body end at it, or in it: the obstacle acts only on rods that it names.
-        problem = "missing: which rods may not enter an obstacle on a body is not guessed, for some of them carry it"
+        problem = "missing: an obstacle on a body names the rods that may not enter it, since other rods may carry it"
         yield Fault(("rods",), problem, "name them, as in rods = ['finger']")
     for key in ("bodies", "disks"):
         if key in given:
-            problem = "an obstacle on a body keeps off rods alone: contact of two bodies is not found"
+            problem = "an obstacle on a body keeps off only rods: contact of two bodies is not found"
             yield Fault((key,), problem, f"leave {key} out, or leave body out")
 
 
@@ -244,13 +244,13 @@ def _disks_without_contact(given: Table, scene: SceneTables, *, flat: bool) -> I
             for i, name in enumerate(list_of(given.get(key))):
                 table = scene.table_named(key, name)
                 if "thickness" in table or (key == "disks" and table):
-                    problem = f"{name!r} has a rim, and where a rim meets a curved obstacle no closed form tells"
+                    problem = f"{name!r} has a rim, and no closed form says where a rim meets a curved obstacle"
                     yield Fault((key, i), problem, "give width, m, or bodies with a radius alone, which are balls")
         return
     for i, name in enumerate(list_of(given.get("disks"))):
         # A faulty row has its own faults.
         if sound(Disks, scene.table_named("disks", name)) is not None:
-            problem = f"disks of {name!r} touch exactly, and their numbers are no parameters"
+            problem = f"disks of {name!r} touch exactly, and their numbers cannot be parameters"
             yield Fault(("disks", i), problem, "give width, m, or leave those parameters out")
 
 

@@ -48,7 +48,8 @@ base = { euler = { sequence = "xyz", angles = [0.1, 0, 1.57] } }     # "XYZ": ab
     @property
     def quaternion(self) -> FloatArray:
         """The orientation as a quaternion, shape (4,)."""
-        turns = [quaternion_about(np.eye(3)["xyz".index(axis.lower())] * angle) for axis, angle in self._turns]
+        axes = dict(zip("xyz", np.eye(3), strict=True))
+        turns = [quaternion_about(axes[axis.lower()] * angle) for axis, angle in self._turns]
         first, second, third = turns if self.sequence.isupper() else turns[::-1]
         return np.asarray(quaternion_product(quaternion_product(first, second), third))
 

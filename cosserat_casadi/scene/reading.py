@@ -25,6 +25,7 @@ from cosserat_casadi.scene.input_rules import owners_of
 from cosserat_casadi.scene.joint_ends import place_joints_by_their_ends
 from cosserat_casadi.scene.messages import problem_of, problems_of
 from cosserat_casadi.scene.motion_records import InputMotion
+from cosserat_casadi.scene.obstacle_records import SMOOTH_KEYS
 from cosserat_casadi.scene.overrides import RefusedOverride, apply_overrides, assign
 from cosserat_casadi.scene.profiles import Notation, RefusedProfile, read_profile
 from cosserat_casadi.scene.records import Record, keys_of, sound
@@ -32,6 +33,8 @@ from cosserat_casadi.scene.rod_records import Rod
 from cosserat_casadi.scene.scene import Scene
 from cosserat_casadi.scene.toml import TOO_DEEP, file_text, parsed
 from cosserat_casadi.scene.tube_records import Tube
+from cosserat_casadi.scene.values import names_in
+from cosserat_casadi.scene.writing import scene_tables
 
 LOG = logging.getLogger(__name__)
 
@@ -295,3 +298,24 @@ def _sizes(section: Record | None) -> dict[str, float]:
     tapered = {key: value for key, value in section or () if key in SIZES and isinstance(value, tuple)}
     ends = {key: max(value) for key, value in tapered.items() if all(isinstance(end, float | int) for end in value)}
     return _numbers(section, SIZES) | ends
+
+
+def with_exact_contact(scene: Scene) -> Scene:
+    """The scene with obstacles without widths, for which a solve searches the contacts.
+
+    Raises:
+        SceneError: exact contact of these rods is not supported.
+    """
+    tables = scene_tables(scene)
+    gone = set[str]()
+    for number, obstacle in enumerate(tables.get("obstacles", [])):
+        for key in SMOOTH_KEYS:
+            obstacle.pop(key, None)
+            gone |= {f"{owner}.{key}" for owner in (obstacle["name"], f"obstacles.{number}", f"obstacles[{number}]")}
+    accuracy = tables.get("accuracy", {})
+    for discretisation in (accuracy, *accuracy.get("of_rods", [])):
+        discretisation.pop("sections", None)
+    if scene.parameters:
+        left = ([name for name in names_in(names) if name not in gone] for names in scene.parameters)
+        tables["parameters"] = [names for names in left if names]
+    return scene_from_dict(tables)

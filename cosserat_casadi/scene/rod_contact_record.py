@@ -93,15 +93,15 @@ width = 5e-4
             yield Fault(("rods",), problem, "give a table for each pair, or leave rods out: every two rods then")
         exact = given.get("exact", False)
         if exact is False:
-            problem = "is of impacts, which a contact that is smooth does not have"
+            problem = "describes impacts, which a smooth contact does not have"
             yield from refused_keys(given, ("restitution",), problem, "give exact = true, or leave it out")
         if exact is not True:
             return
-        problem = "is of a contact that is smooth"
+        problem = "describes a smooth contact"
         yield from refused_keys(given, SMOOTH_KEYS, problem, "leave it out, or leave exact out")
         names = rods if isinstance(rods, list | tuple) else []
         if names and isinstance(names[0], str) and names.count(names[0]) == len(names):
-            problem = "exact contact is of two rods, not of one with itself"
+            problem = "exact contact needs two rods, not one rod with itself"
             yield Fault(("exact",), problem, "leave it out: contact of a rod with itself is smooth")
 
     @classmethod
@@ -126,7 +126,7 @@ width = 5e-4
             remedy = "leave the width of each obstacle out" if exact else "give each obstacle a width, m"
             yield Fault((), problem, f"{remedy}, or leave one of the two out")
         if any((other.get("exact") is True) is not exact for _, other in scene.tables("rod_contacts")):
-            problem = "is true of some rods that touch rods, and not of all"
+            problem = "is true for some pairs of rods, and not for all"
             yield Fault(("exact",), problem, "give it for all, or for none")
         if exact:
             for name in names:

@@ -239,7 +239,7 @@ damping = { retardation_time = 0.01 }
         total = max(sum(map(sum, of_strain)) for of_strain in shares)
         if total >= 1.0:
             problem = f"must have shares that add up to less than 1, got {shown(total)}"
-            yield Fault(("prony",), problem, "what is left of the instantaneous stiffness carries loads at rest")
+            yield Fault(("prony",), problem, "the rest of the instantaneous stiffness carries loads at rest")
 
 
 # Shape and pose
@@ -337,8 +337,8 @@ base = { position = [0, 0, 0.1], tangent = [1, 0, 0] }
         description="admitted strains: 'planar' (bending in the local x–z plane), 'kirchhoff' (bending and torsion), "
         "'reissner' (all six), or a list out of bending_x, bending_y, torsion, shear_x, shear_y, extension"
     )
-    basis: Literal["legendre", "chebyshev"] = Field("legendre", description="polynomials that the strains are made of")
-    material: ElasticMaterial | None = Field(None, description="what the rod is made of; with section")
+    basis: Literal["legendre", "chebyshev"] = Field("legendre", description="polynomials of the strains")
+    material: ElasticMaterial | None = Field(None, description="material of the rod; with section")
     section: Section | None = Field(None, description="its cross-section; with material")
     stiffness: Stiffness | None = Field(None, description="stiffnesses, N m² and N; instead of material and section")
     stiffness_matrix: StiffnessMatrix | None = Field(
@@ -386,7 +386,7 @@ base = { position = [0, 0, 0.1], tangent = [1, 0, 0] }
         tables: list[tuple[Path, Any]] = [(("damping",), damping)]
         tables += [(("damping", "prony", i), branch) for i, branch in enumerate(list_of(damping.get("prony")))]
         for place, table in tables:
-            problem = "is of a strain that the rod does not admit"
+            problem = "belongs to a strain that the rod does not admit"
             yield from below(place, refused_keys(table_of(table), others, problem, remedy))
 
     @classmethod
@@ -400,7 +400,7 @@ base = { position = [0, 0, 0.1], tangent = [1, 0, 0] }
         if "rod" in base:
             yield Fault((), f"{shown(name)} starts on another rod", "move the base of that one")
         elif base.get("free") is True:
-            yield Fault((), f"the base of {shown(name)} is free", "nothing holds it: what acts on it are loads")
+            yield Fault((), f"the base of {shown(name)} is free", "nothing holds it, only loads act on it")
         holding = (*scene.tables("supports"), *scene.tables("joints"))
         # A joint at the base moves with it.
         held = any(table.get("rod") == name and table.get("at") != 0 for _, table in holding)

@@ -101,21 +101,21 @@ inputs = ["push.force", "cable.tension"]
     )
     accuracy: Accuracy = Field(Accuracy(), description="wanted accuracy, or a fixed discretisation")
     rods: Annotated[tuple[Rod, ...], NotEmpty()] = Field((), description="the rods, at least one, unless it has tubes")
-    loads: tuple[Load, ...] = Field((), description="what acts on the rods")
+    loads: tuple[Load, ...] = Field((), description="loads on the rods")
     supports: tuple[Support, ...] = Field((), description="tips that are held; a tip without support is free")
     actuators: tuple[Actuator, ...] = Field((), description="tendons, pressurised chambers and muscles")
     bodies: tuple[Body, ...] = Field((), description="rigid bodies that rods carry")
     joints: tuple[Joint, ...] = Field((), description="joints between sections of rods and bodies")
     disks: tuple[Disks, ...] = Field((), description="rows of disks on rods")
-    obstacles: tuple[Obstacle, ...] = Field((), description="what rods may not enter, or leave")
+    obstacles: tuple[Obstacle, ...] = Field((), description="obstacles, which rods may not enter, or leave")
     rod_contacts: tuple[RodContact, ...] = Field((), description="rods that may not enter each other, or themselves")
     tubes: Annotated[tuple[Tube, ...], NotEmpty()] = Field(
         (), description="concentric tubes, instead of rods; only loads act on them"
     )
-    targets: tuple[Target, ...] = Field((), description="where sections and bodies are to be, for the inverse problem")
+    targets: tuple[Target, ...] = Field((), description="wanted places of sections and bodies, for the inverse problem")
     bounds: tuple[Bound, ...] = Field((), description="ranges of inputs that the inverse problem looks for")
-    measurements: tuple[Measurement, ...] = Field((), description="what was measured; for `cosserat identify` alone")
-    unknowns: tuple[Unknown, ...] = Field((), description="what is to be found; for `cosserat identify` alone")
+    measurements: tuple[Measurement, ...] = Field((), description="measurements; for `cosserat identify` alone")
+    unknowns: tuple[Unknown, ...] = Field((), description="numbers to find; for `cosserat identify` alone")
     identification: IdentificationSettings = Field(
         IdentificationSettings(), description="how the unknowns are looked for; for `cosserat identify` alone"
     )
@@ -125,7 +125,7 @@ inputs = ["push.force", "cable.tension"]
     simulation: Simulation | None = Field(None, description="how a motion is computed; for `cosserat simulate` alone")
     motions: tuple[InputMotion, ...] = Field((), description="inputs over time; for `cosserat simulate` alone")
     velocities: tuple[InitialVelocity, ...] = Field(
-        (), description="velocities at t = 0 of what does not begin at rest; for `cosserat simulate` alone"
+        (), description="velocities at t = 0 of parts that do not begin at rest; for `cosserat simulate` alone"
     )
 
     @property

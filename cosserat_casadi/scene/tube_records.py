@@ -109,7 +109,7 @@ translation = 0.15
     }
 
     name: Name = Field(description="name of the tube, a letter, then letters, digits and underscores")
-    material: Material | None = Field(None, description="what the tube is made of; with section")
+    material: Material | None = Field(None, description="material of the tube; with section")
     section: TubeSection | None = Field(None, description="its cross-section; with material")
     stiffness: TubeStiffness | None = Field(None, description="stiffnesses, N m²; instead of material and section")
     linear_density: Positive | None = Field(
@@ -122,7 +122,7 @@ translation = 0.15
     )
     rotation: Number = Field(0.0, description="angle of its drive about z, rad")
     translation: NotNegative = Field(
-        description="how far its tip stands out of the plate along the tube, m; at most its length"
+        description="distance of its tip from the plate along the tube, m; at most its length"
     )
 
     @property
@@ -206,10 +206,10 @@ def _target_faults(scene: SceneTables) -> Iterator[Fault]:
     """Faults of targets for other places on tubes than their tips."""
     for index, target in scene.tables("targets"):
         if target.get("kind") == "curve":
-            remedy = "of tubes, give the pose or the position of a tip"
+            remedy = "for tubes, give the pose or the position of a tip"
             yield Fault(("targets", index, "kind"), "is for points along a rod", remedy)
         elif numbers_of(target.get("at", 1.0)) != [1.0]:
-            yield Fault(("targets", index, "at"), "is a place on a rod", "leave it out: of a tube it is the tip")
+            yield Fault(("targets", index, "at"), "is a place on a rod", "leave it out: for a tube it is the tip")
 
 
 def _measurement_faults(scene: SceneTables) -> Iterator[Fault]:
@@ -220,7 +220,7 @@ def _measurement_faults(scene: SceneTables) -> Iterator[Fault]:
             remedy = f"of tubes, give {' or '.join(MEASURED_ON_TUBES)}"
             yield Fault(("measurements", index, "quantity"), f"{shown(quantity)} is not measured on tubes", remedy)
         if "time" in measurement:
-            yield Fault(("measurements", index, "time"), "is of a motion, and tubes have none", "leave it out")
+            yield Fault(("measurements", index, "time"), "needs a motion, and tubes have none", "leave it out")
 
 
 def _spread_faults(load: Table) -> Iterator[Fault]:

@@ -63,7 +63,7 @@ per_row = true
     )
     lower: Component | None = Field(None, description="least value in its unit; a number, or one for each entry")
     upper: Component | None = Field(None, description="largest value in its unit; a number, or one for each entry")
-    prior: Prior | None = Field(None, description="what is known beforehand, in its unit")
+    prior: Prior | None = Field(None, description="prior knowledge of it, in its unit")
 
     @property
     def name(self) -> str:
@@ -78,8 +78,8 @@ per_row = true
         yield from one_of("parameter", "input", given, "name a parameter or an input")
         of_row = given.get("per_row") is True and "parameter" in given and "input" not in given
         if of_row and not ("lower" in given and "upper" in given):
-            problem = "asks for a parameter of each row, of which lower or upper is missing"
-            yield Fault(("per_row",), problem, "say between which values it may be; an estimate begins there")
+            problem = "asks for a parameter of each row, but its lower or upper is missing"
+            yield Fault(("per_row",), problem, "give its least and largest value, between which an estimate begins")
         yield from faults_of_ends(given, equal=False)
 
     @classmethod
@@ -94,7 +94,7 @@ per_row = true
             for measured in table_of(measurement.get("inputs")):
                 if isinstance(measured, str) and overlap(name, measured):
                     problem = f"measurements[{i}] sets {shown(measured)}"
-                    yield Fault(path, problem, "what is unknown has no column: leave it out there, or here")
+                    yield Fault(path, problem, "an unknown has no column: leave it out there, or here")
                     return
         over_time = any("time" in measurement for _, measurement in scene.tables("measurements"))
         mover = table_that_moves(name, scene)

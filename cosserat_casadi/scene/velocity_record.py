@@ -79,7 +79,7 @@ curvature_rate = [0, { base = 2.0, tip = 0.0 }, 0]
                 yield Fault((key,), f"{shown(given[key])} has more than one initial velocity", "give one table for it")
         rod = scene.table_named("rods", given.get("rod"))
         if rod and table_of(rod.get("base")).get("free") is not True:
-            problem = "the base of the rod is held, and has no velocity of its own"
+            problem = "the base of the rod is held, so that it has no initial velocity"
             yield from refused_keys(given, OF_FRAMES, problem, "move it by [[motions]], or set free = true")
         admitted = admitted_strains(rod.get("strain"))
         rates = [*_components(given, "curvature_rate"), *_components(given, "tangent_rate")]

@@ -140,7 +140,7 @@ def _taken(future: Any, waiting: dict[str, Chunk]) -> tuple[Chunk, FloatArray]:
     try:
         results: FloatArray = future.result()
     except (CancelledError, KilledWorker, OSError) as error:
-        message = f"the cluster gave a chunk up: {error}; the same command goes on with what is not done"
+        message = f"the cluster gave a chunk up: {error}; the same command goes on with the other rows"
         raise ClusterError(message) from None
     chunk = waiting.pop(future.key)
     return chunk, results

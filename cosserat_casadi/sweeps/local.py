@@ -60,7 +60,7 @@ class Worker:
             process.stdin.flush()
             results: FloatArray = pickle.load(process.stdout)
         except (OSError, EOFError, pickle.UnpicklingError):
-            message = f"a process of the sweep ended with {process.wait()}; what an output keeps is not done again"
+            message = f"a process of the sweep ended with {process.wait()}; finished rows in an output stay finished"
             raise SolveError(message) from None
         return results
 

@@ -234,7 +234,7 @@ def _read_parquet(path: Path) -> _Read:
     words = table.column(split).cast(arrow.string())
     places = pyarrow.compute.index_in(words, arrow.array(LABELS))
     if places.null_count:
-        raise ValueError("an outcome is none that a row can have")
+        raise ValueError("an outcome is not one that a row can have")
     columns = [*table.columns[:split], *table.columns[split + 1 :]]
     values = np.empty((table.num_rows, len(columns)))
     for index, column in enumerate(columns):

@@ -77,7 +77,7 @@ class RowModel:
                 start=near,
                 estimate_error=self.estimate_errors,
             )
-            # With other parameters obstacles may be elsewhere, and the way between the shapes may lead through them.
+            # Other parameters may move obstacles, so that the way between the shapes leads through them.
             if model.scene.touches_exactly and solution.converged and not p.size:
                 near = solution
             yield solution
@@ -153,7 +153,8 @@ def solved_poses(solution: Any) -> FloatArray:
     """Positions and quaternions of the tips and the bodies of a solution, shape (7 tips and bodies,)."""
     tips = [solution.tip(name) for name in solution.model.lengths]
     bodies = [solution.body(body.name) for body in solution.model.scene.bodies]
-    return np.concatenate([np.ravel(part) for pose in (*tips, *bodies) for part in (pose.position, pose.quaternion)])
+    poses = [np.concatenate([pose.position, pose.quaternion]) for pose in (*tips, *bodies)]
+    return np.concatenate(poses)
 
 
 def _contact_numbers(solution: Solution, name: str, obstacle: str, *, of_body: bool) -> list[float]:

@@ -319,7 +319,9 @@ def run_shard(
     file = shard.file(plan.output)
     begun = Store(file).head()
     if begun is not None and begun["sweep"] != plan.identity:
-        raise SceneError(Problem("--shard", f"{file} is of another sweep", "remove it, or choose another --output"))
+        raise SceneError(
+            Problem("--shard", (f"{file} belongs to another sweep"), "remove it, or choose another --output")
+        )
     with _machine(scheduler, cores, plan.device) as machine, Store(file) as store:
         choice = _begun(plan, work, store, told, _choice_of_others(plan, shard))
         _Run(plan, work, choice, told).solve_rest(machine, store)
@@ -367,9 +369,7 @@ def merge_shards(plan: Plan, *, progress: StageProgress | None = None) -> Sweep:
     missing = [chunk for chunk in work if chunk.number not in known]
     if missing:
         unfinished = [shard for shard in files if any(shard.has(chunk) for chunk in missing)]
-        raise SceneError(
-            Problem("--merge", f"not done to the end: {named(unfinished, TOLD)}", "run these shards again")
-        )
+        raise SceneError(Problem("--merge", f"not finished: {named(unfinished, TOLD)}", "run these shards again"))
     choice = Choice.read(_known(heads)[0]["choice"])
     sweep = _Run(plan, work, choice, progress or not_told).sweep(_results_of(done, *_sizes(plan, work)))
     write_sweep(sweep, plan.output)
@@ -413,7 +413,7 @@ def _check_shards(plan: Plan, work: Sequence[Chunk], heads: Mapping[Shard, dict[
     problems = []
     others = [shard for shard, head in heads.items() if head is None or head["sweep"] != plan.identity]
     if others:
-        problem = f"of another sweep, or damaged: {named(others, TOLD)}"
+        problem = f"from another sweep, or damaged: {named(others, TOLD)}"
         problems.append(Problem("--merge", problem, "remove their files; scene, table and options must be the same"))
     counts = sorted({shard.count for shard in heads})
     if len(counts) > 1:
@@ -669,12 +669,12 @@ def output_problems(output: Path | None, plan: Plan | None) -> list[Problem]:
     # A run that was killed before its first line leaves an empty file.
     unfinished = part.exists() and (not part.is_file() or part.stat().st_size > 0)
     if unfinished and head.get("sweep") != identity:
-        problem = f"{part} is of another sweep, which was not finished, or has been changed"
+        problem = f"{part} belongs to another sweep, which was not finished, or was changed"
         remedy = "finish that one, remove the file, or name another output"
         problems.append(Problem("--output", problem, remedy))
     record = read_record(output) or {}
     taken = [file for file in (output, record_file(output)) if file.exists()]
     if taken and record.get("sweep") != identity:
-        problem = f"{taken[0]} exists, and is not of this sweep"
+        problem = f"{taken[0]} exists, and does not belong to this sweep"
         problems.append(Problem("--output", problem, "name another file, or remove it"))
     return problems

@@ -36,7 +36,7 @@ class StoreChangedError(CosseratError):
     page = "sweeps"
 
     def __init__(self, path: Path) -> None:
-        super().__init__(f"{path} was changed while the sweep ran: the same command goes on with what is sound in it")
+        super().__init__(f"{path} was changed while the sweep ran: the same command goes on with its sound rows")
 
 
 class Memory:
@@ -182,7 +182,7 @@ def _entries(file: BinaryIO, sizes: Mapping[int, int]) -> Iterator[tuple[int, by
     """
     while len(header := file.read(ENTRY.size)) == ENTRY.size:
         number, size, checksum = ENTRY.unpack(header)
-        # Zeros are what a file system may leave after a failure of power: no chunk is empty.
+        # A file system may leave zeros after a failure of power: no chunk is empty.
         if size <= 0 or sizes.get(number) != size:
             return
         content = file.read(size)

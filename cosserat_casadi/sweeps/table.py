@@ -194,7 +194,7 @@ def table_of(columns: Mapping[str, npt.ArrayLike], scratch: Scratch = MEMORY) ->
         problems.append(Problem("table", "holds no row"))
     for name, array in arrays.items():
         if not np.all(np.isfinite(array)):
-            problems.append(Problem(name, "holds what is not a finite number"))
+            problems.append(Problem(name, "holds a value that is not a finite number"))
     refuse(problems)
     count = max(lengths)
     full_columns = [np.broadcast_to(array, count) for array in arrays.values()]

@@ -259,7 +259,7 @@ def _set_twice(scene: Scene, names: Sequence[str], table: Table) -> Iterator[Pro
         # If one path is within the other, setting the shorter one sets the longer one too.
         shared = min(len(first_path), len(second_path))
         if first_path[:shared] == second_path[:shared]:
-            remedy = "name what is swept in one way: push.force.x, wire.section.radius"
+            remedy = "name each swept number once: push.force.x, wire.section.radius"
             yield Problem(table.where, f"{second!r} sets what {first!r} sets", remedy)
 
 

@@ -92,14 +92,14 @@ class TubeEquilibria(Result):
     def message(self) -> str:
         """A sentence for the user."""
         if self.robot.loads and self.solutions:
-            return "Equilibria were found by following those without loads while the loads grow: others may be missing."
+            return "The search followed equilibria from no loads to the full loads: others may be missing."
         if self.complete:
             return (
                 "The search for all equilibria of these inputs has settled, and the signs of their determinants add up "
                 "to one: no single one is missing."
             )
         if not self.solutions:
-            return "No equilibrium was found, though there is one: the search ended before it settled."
+            return "No equilibrium was found, though one exists: the search ended before it settled."
         return (
             "Equilibria were found, but others may be missing: the search ended before it settled with determinants "
             "whose signs add up to one, within tolerance."
@@ -120,7 +120,7 @@ def all_equilibria(scene: scenes.Scene, values: Values = None) -> TubeEquilibria
     robot = robot_of(scene)
     at = robot.packed(values)
     if robot.size > MOST_TUBES:
-        problem = f"all equilibria are looked for of at most {MOST_TUBES} tubes, the scene has {robot.size}"
+        problem = f"the search for all equilibria takes at most {MOST_TUBES} tubes, and the scene has {robot.size}"
         raise SceneError(Problem("tubes", problem, "solve it without --all"))
     # As many steps as one of them needs are a beginning for the others.
     model = solve_tubes(scene, at).model
@@ -215,8 +215,9 @@ def _differ(one: TubeSolution, other: TubeSolution) -> bool:
     """Whether two equilibria under loads differ; a quaternion and its opposite are one frame."""
     size = one.robot.size
     sign = np.sign(one.x[size:] @ other.x[size:])
-    change = np.concatenate([one.angles - other.angles, one.x[size:] - sign * other.x[size:]])
-    return bool(np.abs(change).max() > SAME)
+    turned = np.abs(one.angles - other.angles)
+    others = np.abs(one.x[size:] - sign * other.x[size:])
+    return bool(np.concatenate([turned, others]).max() > SAME)
 
 
 def _without_loads(model: TubeModel, at: FloatArray) -> TubeEquilibria:

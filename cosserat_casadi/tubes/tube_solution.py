@@ -43,15 +43,18 @@ class TubeShape:
         Positions are cubics with the tangents at the places of the robot, quaternions between two places are blended.
         """
         # Of places at one distance the last begins the piece behind it.
-        before = np.clip(np.searchsorted(self.distance, distance, side="right") - 1, 0, len(self.distance) - 2)
+        before = np.searchsorted(self.distance, distance, side="right") - 1
+        before = np.clip(before, 0, len(self.distance) - 2)
         step = np.diff(self.distance)[before][:, None]
         share = (distance - self.distance[before])[:, None] / np.where(step > 0.0, step, 1.0)
         tangent = quaternion_to_matrix(self.quaternion.T)[:, 2].T
-        chord = self.position[before] + share**2 * (3.0 - 2.0 * share) * np.diff(self.position, axis=0)[before]
+        chord = np.diff(self.position, axis=0)[before]
+        along_chord = self.position[before] + share**2 * (3.0 - 2.0 * share) * chord
         leaving = share * (1.0 - share) ** 2 * tangent[before]
         arriving = share**2 * (share - 1.0) * tangent[before + 1]
+        position = along_chord + step * (leaving + arriving)
         blended = (1.0 - share) * self.quaternion[before] + share * self.quaternion[before + 1]
-        return chord + step * (leaving + arriving), blended / np.linalg.norm(blended, axis=1, keepdims=True)
+        return position, blended / np.linalg.norm(blended, axis=1, keepdims=True)
 
 
 @dataclass(frozen=True, repr=False)

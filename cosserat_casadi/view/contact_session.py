@@ -40,8 +40,8 @@ class ContactSession(RobotSession):
         self.move(self.model.pack().tolist())
         seconds = time.perf_counter() - began
         note = (
-            f"Contact is exact and is looked for anew with every move: about {seconds:.1g} s each. "
-            "Derivatives, the ring at the tip, vibrations and motions are for scenes without it."
+            f"Contact is exact, and every move searches for it anew, which takes about {seconds:.1g} s. Derivatives, "
+            "the ring at the tip, vibrations and motions are for scenes without it."
         )
         offered = {"hand": [], "motion": False, "modes": False, "derivatives": False}
         return {**page_facts(self.first, self.model, self.asked), **offered, "note": note}

@@ -401,7 +401,7 @@ class Question(BaseModel):
             QuestionError: a part is missing, or its name is unknown.
         """
         if self.position is None or len(self.pose) != 1:
-            raise QuestionError("a position, and a pose that names one rod or one body, are asked for")
+            raise QuestionError("the request needs a position, and a pose that names one rod or one body")
         ((kind, name),) = self.pose.items()
         if name not in names.get(kind, ()):
             raise QuestionError("pose names no rod and no body of the scene")

@@ -27,7 +27,7 @@ from cosserat_casadi.tubes.tube_solution import TubeSolution
 from cosserat_casadi.tubes.tube_solve import model_of, moved_to, solve_at
 from cosserat_casadi.view.robot_session import OF_EVERY_SESSION, RobotSession, stacked_inputs, state_of
 
-NOTE = "A robot that snaps is solved anew from straight tubes, and may come to rest elsewhere than a real one."
+NOTE = "A robot that snaps is solved anew from straight tubes. A real robot may come to rest elsewhere."
 
 
 class TubeSession(RobotSession):

@@ -115,7 +115,7 @@ class ViewSession(RobotSession):
         answer = accuracy_of(found)
         if not found.within_tolerance:
             return {**answer, "drawn": None}
-        text = f"Drawn with modes that are chosen for these inputs: {refined.size} unknowns. {answer['text']}"
+        text = f"The drawing has modes chosen for these inputs: {refined.size} unknowns. {answer['text']}"
         return {**answer, "text": text, "drawn": drawn_numbers(model, found).tolist()}
 
     def modes(self) -> dict[str, Any]:

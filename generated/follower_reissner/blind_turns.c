@@ -2,14 +2,15 @@
 typedef struct {
   int elements, unknowns, missing;
   const int *of_unknown;  /* element that each unknown turns, or -1 */
-  const real *by_unknown; /* how far a unit of it does, rad */
+  const real *by_unknown; /* turn of the element by a unit of the unknown, rad */
   const real *unloaded;   /* turn of each unloaded element, rad */
   const int *of_missing;  /* element of each missing coordinate, or -1 */
-  const int *modes;       /* of its strain in the richer model */
+  const int *modes;       /* number of modes of its strain in the richer model */
 } turned_elements;
 
-/* Whether an element, so many times as long as in the table, turns so far that missing modes, which are not empty, do not see
-   waves along it. It turns by its own turn and the root mean square of what loads add at most. */
+/* Whether an element turns so far that missing modes, which are not empty, do not see waves along it. times is its
+   length over that in the table. Its turn is at most the unloaded turn plus the root mean square of the turn that loads
+   add. */
 static int hides_waves(const turned_elements *own, int element, real times, const real *x, const real *missing) {
   real square = 0, unseen = 0;
   for (int i = 0; i < own->unknowns; i++) {

@@ -72,7 +72,7 @@ static real resolution_index(const real *x, const real *inputs, workspace *work)
   return index;
 }
 
-/* Nothing in the scene has a limit of its strains. */
+/* The scene has no limit of strains. */
 static solver_status within_limits(solver_status end, const real *x, const real *inputs, workspace *work) {
   (void)x;
   (void)inputs;
@@ -267,11 +267,11 @@ const char *follower_reissner_status_text(follower_reissner_status status) {
     case FOLLOWER_REISSNER_UNRESOLVED:
       return "An equilibrium of the discrete model was found, but it is not resolved by its modes and nodes, or its steps: allow more of them, or a larger tolerance.";
     case FOLLOWER_REISSNER_NOT_IN_EQUILIBRIUM:
-      return "The unknowns are no equilibrium for these inputs: solve first.";
+      return "The unknowns are not an equilibrium at these inputs: solve first.";
     case FOLLOWER_REISSNER_LOST_TRACK:
-      return "The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew.";
+      return "One turn could not follow the solution of the last turn to these inputs within its bounds: move the inputs less in a turn, or solve anew.";
     case FOLLOWER_REISSNER_PATH_VANISHED:
-      return "No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis.";
+      return "No equilibrium of the rod: it bends so far that the path of a tendon has no length left in it, and further bending would turn the matter inside out: lessen the loads, or move the path nearer to the axis.";
     case FOLLOWER_REISSNER_BEYOND_MATERIAL:
       return "No equilibrium of the rod: a strain, or the pressure in a chamber, is beyond where its law holds, or a further strain would set energy free: lessen the loads, or give the law for larger ones.";
     case FOLLOWER_REISSNER_OUT_OF_PLANE:

@@ -1,4 +1,4 @@
-/* What the solver and its headers are compiled with for follower_reissner: names, sizes, limits. */
+/* Names, sizes and limits with which the solver and its headers are compiled for follower_reissner. */
 #include "follower_reissner.h"
 
 #define solver_real follower_reissner_real

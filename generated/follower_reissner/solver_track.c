@@ -8,8 +8,8 @@ static const solver_options DEFAULT_OPTIONS = {
 /* Iterations of a turn beyond which a new Jacobian, which takes about as long as three, pays. */
 enum { RENEW_ABOVE = 3 };
 
-/* From the solution for the inputs of the last turn along the straight line to the new ones; zero, and x as it was, where
-   the budget of the turn is spent before the end. */
+/* Continues from the solution for the inputs of the last turn along the straight line to the new inputs. Returns zero
+   and restores x if the budget of the turn ends before. */
 static int follow_last_turn(const solver_memory *memory, const solver_options *options, const real *inputs, real *x,
                             workspace *work, solver_info *info) {
   const load_path path = {.grows_load = 0, .from = memory->inputs, .to = inputs};
@@ -35,11 +35,10 @@ static int follow_last_turn(const solver_memory *memory, const solver_options *o
   return 1;
 }
 
-/* From x at the inputs of the last turn to the solution for new ones; x is left as it was where that is not reached within
-   the budget. */
+/* Moves x from the inputs of the last turn to the solution for new ones; restores x if the budget ends before. */
 static solver_status reach(const solver_memory *memory, const solver_options *options, const real *inputs, real *x,
                            workspace *work, solver_info *found) {
-  /* Half of the budget is left to the continuation. */
+  /* The continuation keeps half of the budget. */
   const newton_limits limits = {
       .max_iterations = (options->max_iterations + 1) / 2,
       .max_jacobians = options->max_iterations,
@@ -56,7 +55,7 @@ static solver_status reach(const solver_memory *memory, const solver_options *op
   return finish(x, inputs, 0, found, 0, work);
 }
 
-/* The end of a turn that has no solution: of what x is, for these inputs. */
+/* Ends a turn without a solution, and reports x at these inputs. */
 static solver_status refuse(solver_status end, const real *inputs, const real *x, workspace *work, solver_info *found,
                             solver_info *info) {
   found->status = end;

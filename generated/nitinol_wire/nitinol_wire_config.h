@@ -1,4 +1,4 @@
-/* What the solver and its headers are compiled with for nitinol_wire: names, sizes, limits. */
+/* Names, sizes and limits with which the solver and its headers are compiled for nitinol_wire. */
 #include "nitinol_wire.h"
 
 #define solver_real nitinol_wire_real

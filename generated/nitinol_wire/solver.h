@@ -36,7 +36,7 @@ enum {
 #define ABSOLUTE fabs
 #endif
 
-/* What the residual is taken at besides the unknowns. */
+/* Arguments of the residual besides the unknowns. */
 typedef struct {
   const real *inputs;
   real load_factor;
@@ -47,7 +47,7 @@ static loads full_load(const real *inputs) {
   return full;
 }
 
-/* Four sums, none of which waits for the others. */
+/* Four independent sums run in parallel. */
 static real dot(const real *a, const real *b) {
   real sums[4] = {0, 0, 0, 0};
   int i = 0;
@@ -63,7 +63,7 @@ static real dot(const real *a, const real *b) {
 
 static real norm_of(const real *a) { return SQUARE_ROOT(dot(a, a)); }
 
-/* Zero times what is not finite is no number. Four sums, as above. */
+/* The result is not a number if an entry is not finite. Four independent sums run in parallel. */
 static int all_finite(const real *a, int count) {
   real sums[4] = {0, 0, 0, 0};
   int i = 0;
@@ -87,8 +87,8 @@ typedef struct {
   real residual_norm; /* relative: over one plus the norm of the unknowns */
 } newton_result;
 
-/* When Newton gives up; the length of the step to come below which it stops before the tolerance, 0 for never; whether
-   it begins with the Jacobian at hand. */
+/* Limits of Newton's method: when it gives up; length of the next step below which it stops before the tolerance, 0 for
+   never; whether it begins with the present Jacobian. */
 typedef struct {
   int max_iterations;
   int max_jacobians;
@@ -97,7 +97,7 @@ typedef struct {
   int reuse_jacobian;
 } newton_limits;
 
-/* Where Newton stands at an iterate. */
+/* State of Newton's method at an iterate. */
 typedef struct {
   newton_result result;
   int reuse_jacobian;
@@ -116,10 +116,11 @@ typedef struct {
 typedef struct {
   int max_steps;
   int max_iterations;
-  real first_step; /* as a share of the path; zero for the usual one */
+  real first_step; /* share of the path; zero for the default */
 } path_limits;
 
-/* Where a continuation stands: the last two points and room for the next, the Jacobian of the last and room for one. */
+/* State of a continuation: the last two points and room for the next one, the Jacobian of the last point and room for
+   another. */
 typedef struct {
   path_point *point;
   path_point *previous; /* null at the first point */
@@ -128,5 +129,5 @@ typedef struct {
   updated_jacobian *jacobian;
   updated_jacobian *spare;
   int has_jacobian;
-  real step; /* to go on with, zero where none is long enough */
+  real step; /* next step; zero if none is long enough */
 } progress;

@@ -1,11 +1,11 @@
-/* The error of an answer, from modes and intervals that its model lacks. Each missing mode gives way by what the balance of
-   a richer model lacks in it, as elasticity alone would have it; the Jacobian of the answer tells how its own unknowns
-   follow. A few such sweeps are Newton's corrections with the richer model.
+/* The error of an answer, from modes and intervals that its model lacks. Each missing mode moves by its residual in a
+   richer model over its elastic stiffness; the Jacobian of the answer tells how the answer's unknowns follow. A few
+   such sweeps converge to Newton's correction with the richer model.
 
    cosserat_casadi/equilibrium/answer_error.py holds the same in Python, docs/theory.md, section 10, derives it. */
 
 static real larger_or_none(real one, real largest) {
-  /* Written so that a number which is none is the larger one. */
+  /* If an argument is not a number, it is the result. */
   return one <= largest ? largest : one;
 }
 
@@ -18,7 +18,8 @@ static real angle_between(const real *a, const real *b) {
   return 2 * (real)atan2(SQUARE_ROOT(x * x + y * y + z * z), ABSOLUTE(cosine));
 }
 
-/* The largest change of what is watched: displacements over the length, angles in rad, lengthenings over the length. */
+/* The largest change of the watched numbers: displacements over the length, angles in rad, lengthenings over the
+   length. */
 static real largest_change(const real *before, const real *after) {
   real largest = 0;
   for (int i = 0; i < WATCHED_POSES; i++) {
@@ -34,8 +35,8 @@ static real largest_change(const real *before, const real *after) {
   return largest;
 }
 
-/* What every estimate is at least. In float what Newton's method and rounding leave moves poses by more than modes often do:
-   by up to 2.3 tolerances of the residual in 1200 random answers. */
+/* Least value of an estimate. In float the remainder of Newton's method and rounding often move poses by more than
+   missing modes: by up to 2.3 tolerances of the residual in 1200 random answers. */
 static real least_error(const real *x) {
 #ifdef SOLVER_SINGLE
   real sum = 0;
@@ -53,33 +54,34 @@ static real norm_of_missing(const real *missing) {
   return SQUARE_ROOT(sum);
 }
 
-/* Whether a step of the missing modes is at most half as long as the one before it, or rounding. A wall that they run into
-   is not in their stiffness: then they bounce, and what is watched may settle by chance. */
+/* Whether a step of the missing modes is at most half as long as the last one, or rounding. Their stiffness does not
+   contain walls: at a wall they bounce, and the watched numbers may settle by chance. */
 static int contracts(real before, real step) {
   return step <= ERROR_CONTRACTING * before || step <= 10 * TOLERANCE;
 }
 
-/* The balance at the corrections in the workspace, which stays there. Returns the length of the step of the missing
-   modes that it calls for. */
+/* Computes the balance at the corrections in the workspace. Returns the length of the step of the missing modes by
+   it. */
 static real balance(const real *x, const real *missing, const real *inputs, workspace *work) {
   richer_balance_at(x, work->known_correction, missing, inputs, work->balance, work);
   return norm_of_missing(work->balance + N);
 }
 
-/* Ends the updates of the Jacobian that Newton has left, by a step of infinite length: no step has followed the last one. */
+/* Ends the updates of Newton's last Jacobian by a step of infinite length, since no step followed the last one. */
 static void end_updates(updated_jacobian *jacobian) {
   if (jacobian->count > 0) jacobian->squares[jacobian->count - 1] = INFINITY;
 }
 
-/* Lets the unknowns of the answer follow the missing modes, which leave this residual: by a step with the Jacobian at hand,
-   and by one from the equations of the answer behind it, for both nearly cancel what the missing modes do to a tip. Leaves
-   their sum as the correction. Returns the length of the second over that of the first. */
+/* Lets the unknowns of the answer follow the missing modes, which leave this residual: by a step with the present
+   Jacobian, then by a step from the equations of the answer. Both are needed, since they nearly cancel the motion of a
+   tip by the missing modes. Leaves their sum as the correction. Returns the length of the second step over that of the
+   first. */
 static real follow_missing(const real *x, const loads *at, const real *residual, updated_jacobian *jacobian,
                            workspace *work) {
   real *first = place_of_step(jacobian);
   real *second = work->correction;
   const real first_square = newton_step(jacobian, residual, first, work);
-  /* A step of what Newton has left of the balance tells nothing of the Jacobian: an update by it may be of any size. */
+  /* A step from Newton's remainder says nothing about the Jacobian: an update by it may have any size. */
   if (!(norm_of(residual) > 10 * TOLERANCE * (1 + norm_of(x)))) {
     memcpy(work->correction, first, sizeof work->correction);
     return 0;
@@ -94,8 +96,8 @@ static real follow_missing(const real *x, const loads *at, const real *residual,
   return SQUARE_ROOT(second_square / first_square);
 }
 
-/* The change of what is watched by the corrections in the workspace, whose balance is there, and by a step of the unknowns
-   of the answer: on its own modes, which differ in second order. */
+/* Change of the watched numbers by the corrections in the workspace, with their balance, and by a step of the unknowns
+   of the answer. The step is on the modes of the answer, which differ in second order. */
 static real change_with_following(const real *x, const real *inputs, workspace *work) {
   const real *richer = work->balance + 2 * N + MISSING;
   real *after = work->watched_after;
@@ -105,8 +107,8 @@ static real change_with_following(const real *x, const real *inputs, workspace *
   return largest_change(work->watched, after);
 }
 
-/* One sweep of the corrections, by the elastic steps in the workspace. Returns the change of what is watched; sets next to
-   the length of the step that the missing modes would make before the unknowns of the answer follow. */
+/* One sweep of the corrections, by the elastic steps in the workspace. Returns the change of the watched numbers; sets
+   next to the length of the next step of the missing modes before the unknowns of the answer follow. */
 static real sweep(const real *x, const real *inputs, updated_jacobian *jacobian, real *next, real *shortening,
                   workspace *work) {
   const loads at = full_load(inputs);
@@ -119,8 +121,8 @@ static real sweep(const real *x, const real *inputs, updated_jacobian *jacobian,
   return change;
 }
 
-/* Sum r + r^2 + ... of what degrees beyond those of the richer model give, over what its two highest give: coefficients of
-   each strain go on to fall as over its highest four. */
+/* Sum r + r^2 + ... of the parts by degrees beyond the richer model, over the part by its two highest degrees: the
+   coefficients of each strain fall on as over its highest four. */
 static real sum_beyond(const real *x, const workspace *work) {
   real sums[2 * STRAINS + 2] = {0};
   real squares = 0, next = 0;
@@ -138,7 +140,7 @@ static real sum_beyond(const real *x, const workspace *work) {
   return ratio / (1 - ratio);
 }
 
-/* What modes beyond those of the richer model would add to what is watched: the rest of a series. Leaves the missing modes
+/* Change of the watched numbers by modes beyond the richer model: the rest of a series. Leaves the missing modes
    without the two highest degrees. */
 static real rest_of_series(const real *x, const real *inputs, real change, workspace *work) {
   if (change <= ERROR_FLOOR) return 0;
@@ -151,7 +153,7 @@ static real rest_of_series(const real *x, const real *inputs, real change, works
   return beyond * largest_change(richer, work->watched_after);
 }
 
-/* Estimated error of an equilibrium; the whole length, 1, where the corrections do not settle. */
+/* Estimated error of an equilibrium, over the length; 1 if the corrections do not settle. */
 static real estimated_error(const real *x, const real *inputs, updated_jacobian *jacobian, workspace *work) {
   const loads at = full_load(inputs);
   const int is_old = jacobian != 0;
@@ -174,15 +176,15 @@ static real estimated_error(const real *x, const real *inputs, updated_jacobian 
     const real step = balance(x, work->missing, inputs, work);
     if (!contracts(step_before, step)) break;
     const real change = sweep(x, inputs, jacobian, &next, &shortening, work);
-    /* An old Jacobian that is far from that of the answer tells nothing. */
+    /* An old Jacobian far from that of the answer has no use. */
     if (is_old && !(shortening <= ERROR_FOLLOWED)) return estimated_error(x, inputs, 0, work);
     if (!isfinite(change)) break;
-    /* Where the first step bounces the next one may be short by chance: neither is believed. */
+    /* If the first step bounces, the next one may be short by chance: neither is believed. */
     if (k == 0) bounced = !contracts(step, next);
     const int believed = !bounced || k > 1;
     const int rests = step <= ERROR_SETTLED * norm_of_missing(work->missing) || step <= 10 * TOLERANCE;
     const int settled = rests && ABSOLUTE(change - change_before) <= ERROR_SETTLED * change;
-    /* A look that leaves the answer within its tolerance need not be repeated. */
+    /* A first sweep that leaves the answer within its tolerance is enough. */
     if (believed && (settled || change <= ERROR_ENOUGH)) {
       for (int e = 0; e < TURNED.elements; e++) {
         if (hides_waves(&TURNED, e, 1, x, work->missing)) return 1;

@@ -1,4 +1,4 @@
-/* What the solver and its headers are compiled with for planar_strip: names, sizes, limits. */
+/* Names, sizes and limits with which the solver and its headers are compiled for planar_strip. */
 #include "planar_strip.h"
 
 #define solver_real planar_strip_real

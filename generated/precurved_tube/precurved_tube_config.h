@@ -1,4 +1,4 @@
-/* What the solver and its headers are compiled with for precurved_tube: names, sizes, limits. */
+/* Names, sizes and limits with which the solver and its headers are compiled for precurved_tube. */
 #include "precurved_tube.h"
 
 #define solver_real precurved_tube_real

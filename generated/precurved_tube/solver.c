@@ -2,8 +2,8 @@
    continuation in the load or in the inputs (solver_path.c). See the library's header for what each public function
    promises. */
 
-/* How far two shapes are apart: by strains and poses of frames. Multipliers and tensions may jump where a stiff rod is
-   moved by a hair, and tell nothing of the branch. */
+/* Distance of two shapes by strains and poses of frames. Multipliers and tensions may jump if a stiff rod moves by a
+   hair, and say nothing about the branch. */
 static real shape_distance(const real *a, const real *b) {
   real sum = 0;
   for (int i = 0; i < N; i++) {
@@ -12,8 +12,9 @@ static real shape_distance(const real *a, const real *b) {
   return SQUARE_ROOT(sum);
 }
 
-/* Newton at the full load from x, that of the inputs before; zero, and x as it was, where that strays so far that it may be
-   another branch, or is beyond something thin. Leaves the last Jacobian in updated_jacobians[0]. */
+/* Newton at the full load from x, the solution for the last inputs. Returns zero and restores x if the result strays so
+   far that it may be another branch, or lies beyond something thin. Leaves the last Jacobian in
+   updated_jacobians[0]. */
 static int correct(const newton_limits *limits, const real *before, const real *inputs, real *x, workspace *work,
                    solver_info *info) {
   real *trial = work->points[0].x;
@@ -46,7 +47,7 @@ static solver_info no_result(void) {
   return none;
 }
 
-/* What stands against x as a result where it is none: the residual at the inputs asked for, wherever the path ended. */
+/* Reports an x that is not the solution: the residual at the wanted inputs, wherever the path ended. */
 static real residual_left(const real *x, const real *inputs, workspace *work) {
   real *residual = work->points[0].residual;
   const loads at = full_load(inputs);
@@ -54,8 +55,8 @@ static real residual_left(const real *x, const real *inputs, workspace *work) {
   return norm_of(residual) / (1 + norm_of(x));
 }
 
-/* Nodes too few for so bent a rod give equations whose solution is not one of the rod. The Jacobian is the one that Newton
-   has left at x, or null. */
+/* With too few nodes for a bend the solution of the equations is no solution of the rod. The Jacobian is the one that
+   Newton left at x, or null. */
 static solver_status finish(const real *x, const real *inputs, updated_jacobian *jacobian, solver_info *found,
                             solver_info *info, workspace *work) {
   if (found->status == SOLVER_CONVERGED && !(resolution_index(x, inputs, work) <= 1)) found->status = SOLVER_UNRESOLVED;

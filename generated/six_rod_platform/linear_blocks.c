@@ -64,7 +64,7 @@ static void forward(const real *a, int order, int count, const int *pivots, real
   }
 }
 
-/* Backward substitution, the unknowns of the other columns known; an unknown without a pivot is left at zero. */
+/* Backward substitution; the unknowns of the other columns are known. An unknown without a pivot stays zero. */
 static void backward(const real *a, int order, int count, real *b) {
   subtract(a + count * order, order, b + count, order - count, 0, count, b);
   for (int k = count; k > 0; k -= 4) {
@@ -111,7 +111,7 @@ static int eliminate(real *a, int order, int count, real tiny, int *pivots) {
   return regular;
 }
 
-/* Rod after rod, then the interface with what the rods leave of it; zero where some pivot is at rounding. */
+/* Eliminates rod after rod, then the Schur complement of the interface. Returns zero if a pivot is at rounding. */
 static int eliminate_fronts(real *a, real tiny, int *pivots) {
   real *interface = a + INTERFACE_START;
   for (int k = 0; k < FRONT_COUNT; k++) {

@@ -71,7 +71,7 @@ void six_rod_platform_pack(const six_rod_platform_inputs *named, six_rod_platfor
 void six_rod_platform_unpack(const six_rod_platform_real *inputs, six_rod_platform_inputs *named);
 
 
-/* Ranges of the inputs by what they are, a tension not below zero and a length above, and by the bounds of the scene. The
+/* Ranges of the inputs by what they are, a tension not below zero and a length above zero, and by the bounds of the scene. The
    solver looks at none: a tension below zero pushes along its path, as no cable does, and the solution is one all the same.
    in_range returns 1 where every entry is in its range, 0 where one is outside or is not a number. clamp moves every entry
    outside its range to the nearer end of the range and returns how many it moved; entries that are not numbers stay. */
@@ -152,7 +152,7 @@ typedef struct {
    108 .. 113: multipliers of the tie joints[3] on rod leg_4
    114 .. 119: multipliers of the tie joints[4] on rod leg_5
    120 .. 125: multipliers of the tie joints[5] on rod leg_6
-   126 .. 132: how far the body platform has moved and its quaternion changed
+   126 .. 132: displacement of the body platform and change of its quaternion
    All zero is the unloaded scene. */
 
 typedef enum {
@@ -162,9 +162,9 @@ typedef enum {
   SIX_ROD_PLATFORM_SINGULAR           = 3, /* No equilibrium found: the Jacobian is singular and no step reduces the residual. */
   SIX_ROD_PLATFORM_LOAD_STALLED       = 4, /* No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be followed further; there may be a limit point, a buckling load, or an obstacle or a rod in the way. */
   SIX_ROD_PLATFORM_UNRESOLVED         = 5, /* An equilibrium of the discrete model was found, but it is not resolved by its modes and nodes, or its steps: allow more of them, or a larger tolerance. */
-  SIX_ROD_PLATFORM_NOT_IN_EQUILIBRIUM = 6, /* The unknowns are no equilibrium for these inputs: solve first. */
-  SIX_ROD_PLATFORM_LOST_TRACK         = 7, /* The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew. */
-  SIX_ROD_PLATFORM_PATH_VANISHED      = 8, /* No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis. */
+  SIX_ROD_PLATFORM_NOT_IN_EQUILIBRIUM = 6, /* The unknowns are not an equilibrium at these inputs: solve first. */
+  SIX_ROD_PLATFORM_LOST_TRACK         = 7, /* One turn could not follow the solution of the last turn to these inputs within its bounds: move the inputs less in a turn, or solve anew. */
+  SIX_ROD_PLATFORM_PATH_VANISHED      = 8, /* No equilibrium of the rod: it bends so far that the path of a tendon has no length left in it, and further bending would turn the matter inside out: lessen the loads, or move the path nearer to the axis. */
   SIX_ROD_PLATFORM_BEYOND_MATERIAL    = 9, /* No equilibrium of the rod: a strain, or the pressure in a chamber, is beyond where its law holds, or a further strain would set energy free: lessen the loads, or give the law for larger ones. */
   SIX_ROD_PLATFORM_OUT_OF_PLANE       = 10 /* No equilibrium of the scene: a joint or a support is out of the plane that its rods bend in, or turned out of it: keep it in the plane, or admit the other bending and torsion of the rods. */
 } six_rod_platform_status;

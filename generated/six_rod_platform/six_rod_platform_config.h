@@ -1,4 +1,4 @@
-/* What the solver and its headers are compiled with for six_rod_platform: names, sizes, limits. */
+/* Names, sizes and limits with which the solver and its headers are compiled for six_rod_platform. */
 #include "six_rod_platform.h"
 
 #define solver_real six_rod_platform_real

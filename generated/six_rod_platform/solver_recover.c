@@ -1,10 +1,10 @@
 /* The way back of a control loop that has lost its track: from the last solution towards the inputs, over several turns,
    each within a budget. */
 
-/* Newton steps that bring a point on the way from the exactness of the path to that of a solution. */
+/* Newton steps that turn a point of the path into an exact solution. */
 enum { SETTLING = SOLVER_SETTLING_ITERATIONS };
 
-/* Makes the point that a path has reached the last solution; zero, and all as it was, where Newton leaves it. */
+/* Makes the last point of a path the last solution. Returns zero, without changes, if Newton leaves the point. */
 static int settle(const load_path *path, const progress *end, real *x, solver_memory *memory, workspace *work,
                   solver_info *info) {
   const newton_limits limits = {
@@ -27,7 +27,7 @@ static int settle(const load_path *path, const progress *end, real *x, solver_me
   return 1;
 }
 
-/* The step to begin the next turn with, as a share of the way that is left. */
+/* First step of the next turn, as a share of the remaining way. */
 static real next_step(const progress *end) {
   const real left = 1 - end->point->t;
   return left > end->step ? end->step / left : 1;

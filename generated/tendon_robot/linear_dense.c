@@ -5,7 +5,7 @@
 
 static real larger_of(real one, real other) { return one > other ? one : other; }
 
-/* Size of the largest of some entries. Four candidates, none of which waits for the others. */
+/* Size of the largest entry. Four independent candidates run in parallel. */
 static real largest_entry(const real *a, int count) {
   real largest[4] = {0, 0, 0, 0};
   int i = 0;
@@ -27,7 +27,7 @@ static void swap_rows(real *a, int k, int m) {
   }
 }
 
-/* Row of the largest entry on or below the diagonal of column k: the first of equal ones. */
+/* Row of the largest entry on or below the diagonal of column k, the first of equal entries. */
 static int pivot_row(const real *column, int k) {
   const real largest = largest_entry(column + k, N - k);
   int row = k;
@@ -71,8 +71,8 @@ static void permute(const int *pivots, real *b) {
   }
 }
 
-/* What is left of four neighbouring rows of a right-hand side: less the known unknowns, from one to another by a step of
-   1 or -1, with the factors in these rows. */
+/* Subtracts from four neighbouring rows of a right-hand side their factors times the known unknowns, first to last by a
+   step of 1 or -1. */
 static void subtract_known(const real *rows, const real *known, int from, int to, int step, real *left) {
   real a = left[0];
   real b = left[1];

@@ -16,7 +16,7 @@ static loads loads_at(const load_path *path, real t, workspace *work) {
     at.load_factor = t;
     return at;
   }
-  /* Exact at both ends, however different in size the two are. */
+  /* The interpolation is exact at both ends, however different in size both are. */
   for (int i = 0; i < INPUTS; i++) work->path_inputs[i] = (1 - t) * path->from[i] + t * path->to[i];
   return at;
 }
@@ -36,15 +36,15 @@ static int is_small(const real *correction, const real *predicted) {
   return step_length(correction) <= (real)0.3 + (real)0.5 * step_length(predicted);
 }
 
-/* The response to the rate of the residual; zero where that, or the Jacobian, is not sound. */
+/* The response to the rate of the residual. Returns zero if the rate is not finite, or the Jacobian not regular. */
 static void set_tangent(path_point *point, int sound, const updated_jacobian *jacobian, workspace *work) {
   if (!sound || !response(jacobian, point->residual, work->rate, point->tangent, work)) {
     memset(point->tangent, 0, sizeof point->tangent);
   }
 }
 
-/* dx/dt at a point of the path, with the Jacobian that Newton has left there; zero where there is none. Returns the
-   number of Jacobians that it took. */
+/* dx/dt at a point of the path, with Newton's last Jacobian there; zero without it. Returns the number of new
+   Jacobians. */
 static int tangent_at(const load_path *path, path_point *point, int has_jacobian, updated_jacobian *jacobian,
                       workspace *work) {
   const loads at = loads_at(path, point->t, work);
@@ -78,7 +78,7 @@ static void predict(const path_point *point, const path_point *previous, real st
   for (int i = 0; i < N; i++) predicted[i] += bent[i];
 }
 
-/* Length of the next step, which is wanted this long; zero where that would be too short to go on with. */
+/* Length of the next step from the wanted one; zero if it is too short to go on. */
 static real admissible_step(const progress *now, real wanted) {
   const real rest = 1 - now->point->t;
   const real length = step_length(now->point->tangent);
@@ -96,16 +96,16 @@ static void predict_next(const progress *now, real step, workspace *work) {
   for (int i = 0; i < N; i++) next->x[i] = now->point->x[i] + work->predicted[i];
 }
 
-/* Zero where the Jacobian at hand foresees a correction of the predicted point, with the residual there, too large to be
-   trusted: a new Jacobian costs far more than to ask it. */
+/* Returns zero if the present Jacobian predicts too large a correction of the predicted point with this residual. This
+   question costs far less than a new Jacobian. */
 static int is_promising(const progress *now, workspace *work) {
   if (!now->has_jacobian) return 1;
   if (!response(now->jacobian, now->point->residual, now->next->residual, work->correction, work)) return 1;
   return is_small(work->correction, work->predicted);
 }
 
-/* Corrector: Newton at the next point, inexact on the way and exact at the end. Damping is not allowed: far from the path
-   Newton finds some equilibrium, not the one that the path leads to. */
+/* Corrector: Newton at the next point, inexact on the way and exact at the end, without damping: far from the path
+   Newton would find another equilibrium. */
 static newton_limits corrector_limits(const path_point *next, int max_iterations) {
   const newton_limits limits = {
       .max_iterations = max_iterations < MAX_ITERATIONS ? max_iterations : MAX_ITERATIONS,
@@ -149,9 +149,9 @@ static progress begin_path(int has_jacobian, workspace *work) {
   return now;
 }
 
-/* From the equilibrium at t = 0 in points[0], with its tangent and, where it is known, its Jacobian in
-   updated_jacobians[0], towards t = 1. Returns the last point, which was found inexactly unless it is the end, and the
-   step to go on with, zero where none is long enough. */
+/* Continues from the equilibrium at t = 0 in points[0] towards t = 1. points[0] has its tangent, updated_jacobians[0]
+   its Jacobian if known. Returns the last point, which is inexact unless it is the end, and the next step, zero if none
+   is long enough. */
 static progress follow_path(const load_path *path, const path_limits *limits, int has_jacobian, workspace *work,
                             solver_info *info) {
   progress now = begin_path(has_jacobian, work);
@@ -192,8 +192,8 @@ static progress follow_path(const load_path *path, const path_limits *limits, in
   return now;
 }
 
-/* Follows a path as far as it goes; x is the last point, as near to equilibrium as Newton brings it. Returns the Jacobian
-   that Newton has left at the end of the path; null where it has left none. */
+/* Follows a path to its end; x becomes the last point, as near to equilibrium as Newton brings it. Returns Newton's
+   last Jacobian there, or null. */
 static updated_jacobian *follow_to_the_end(const load_path *path, int has_jacobian, real *x, workspace *work,
                                            solver_info *info) {
   const progress end = follow_path(path, &LONG_PATH, has_jacobian, work, info);
@@ -206,7 +206,7 @@ static updated_jacobian *follow_to_the_end(const load_path *path, int has_jacobi
   return 0;
 }
 
-/* Returns the Jacobian that Newton has left at the solution, or null. */
+/* Returns Newton's last Jacobian at the solution, or null. */
 static updated_jacobian *solve_from_unloaded(const real *inputs, real *x, workspace *work, solver_info *info) {
   const load_path path = {.grows_load = 1, .from = inputs, .to = inputs};
   path_point *first = work->points;

@@ -72,8 +72,8 @@ static real resolution_index(const real *x, const real *inputs, workspace *work)
   return index;
 }
 
-/* The first limit that is passed, those of paths of tendons first, then those of planes of rods, then those of materials
-   and chambers; else -1. */
+/* The first passed limit, in the order: paths of tendons, planes of rods, materials and chambers; -1 if none is
+   passed. */
 static int first_beyond(const real *x, const real *inputs, workspace *work) {
   real margins[4];
   ARGUMENTS(tendon_robot_k_strain_margins, x, inputs);
@@ -85,7 +85,7 @@ static int first_beyond(const real *x, const real *inputs, workspace *work) {
   return -1;
 }
 
-/* The end of a solve in view of the limits: paths of tendons have length left, joints are in the plane of their rods,
+/* Checks the limits at the end of a solve: paths of tendons have length left, joints are in the plane of their rods,
    materials and chambers are within their laws. */
 static solver_status within_limits(solver_status end, const real *x, const real *inputs, workspace *work) {
   if (end != SOLVER_CONVERGED && end != SOLVER_LOAD_STALLED) return end;
@@ -324,11 +324,11 @@ const char *tendon_robot_status_text(tendon_robot_status status) {
     case TENDON_ROBOT_UNRESOLVED:
       return "An equilibrium of the discrete model was found, but it is not resolved by its modes and nodes, or its steps: allow more of them, or a larger tolerance.";
     case TENDON_ROBOT_NOT_IN_EQUILIBRIUM:
-      return "The unknowns are no equilibrium for these inputs: solve first.";
+      return "The unknowns are not an equilibrium at these inputs: solve first.";
     case TENDON_ROBOT_LOST_TRACK:
-      return "The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew.";
+      return "One turn could not follow the solution of the last turn to these inputs within its bounds: move the inputs less in a turn, or solve anew.";
     case TENDON_ROBOT_PATH_VANISHED:
-      return "No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis.";
+      return "No equilibrium of the rod: it bends so far that the path of a tendon has no length left in it, and further bending would turn the matter inside out: lessen the loads, or move the path nearer to the axis.";
     case TENDON_ROBOT_BEYOND_MATERIAL:
       return "No equilibrium of the rod: a strain, or the pressure in a chamber, is beyond where its law holds, or a further strain would set energy free: lessen the loads, or give the law for larger ones.";
     case TENDON_ROBOT_OUT_OF_PLANE:

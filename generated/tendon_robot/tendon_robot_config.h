@@ -1,4 +1,4 @@
-/* What the solver and its headers are compiled with for tendon_robot: names, sizes, limits. */
+/* Names, sizes and limits with which the solver and its headers are compiled for tendon_robot. */
 #include "tendon_robot.h"
 
 #define solver_real tendon_robot_real

@@ -259,7 +259,7 @@ def test_path_that_has_no_branch_is_exit_code_three_and_still_written(tmp_path: 
     assert done.returncode == 3, done.stdout + done.stderr
     path = json.loads((tmp_path / "p.json").read_text())
     assert path["outcome"] == "no_bifurcation"
-    assert "before the bifurcation to leave at" in done.stdout
+    assert "before the chosen bifurcation" in done.stdout
 
 
 def test_every_fault_of_a_path_comes_at_once(wire: Path) -> None:
@@ -346,7 +346,7 @@ def test_inverse_writes_what_was_found(wire: Path) -> None:
         assert (wire / "f.svg").stat().st_size > 1000
         assert ("The targets are met." in found["message"]) is (code == 0)
         # What was asked for is what the first line tells.
-        assert done.stdout.splitlines()[1].startswith("The targets are met." if code == 0 else "The targets are not")
+        assert done.stdout.splitlines()[1].startswith("The targets are met." if code == 0 else "Not all targets are")
     assert found["targets"][0]["position_gap"] == pytest.approx(np.hypot(0.3, 0.1) - 0.2, abs=1e-3)
     assert "misses tip of wire" in found["message"]
 
@@ -601,7 +601,7 @@ def test_export_refuses_every_fault_at_once(wire: Path) -> None:
         "--range: 'push.force.x=1' has no two finite numbers",
         "--range: the range of push.force.y must have the lower end first, got 3:1",
         "--range: 'push.force.z=0:1:0' has no whole number of values above 0",
-        "--over: load cases say which contacts are exported",
+        "--over: load cases say which contacts to export",
     ):
         assert words in done.stderr
     assert "Traceback" not in done.stderr + done.stdout
@@ -793,12 +793,14 @@ def test_an_export_that_misses_the_tolerance_is_written_and_says_so(wire: Path) 
     done = cosserat("export", "wire.toml", "--output", "c", *fixed, "--set", "accuracy.tolerance=1e-6", *few, cwd=wire)
     assert done.returncode == 3, done.stdout + done.stderr
     said = " ".join(done.stderr.split())
-    assert "does not keep the tolerance all over the ranges: leave modes, nodes and rotation out" in said
+    assert "does not keep the tolerance everywhere in the ranges: leave modes, nodes and rotation out" in said
     verified = json.loads((wire / "c" / "manifest.json").read_text())["verified"]
     assert verified["within_tolerance"] is False
     assert verified["error_estimate"] > 1e-6
     for file in ("README.md", "wire.h"):
-        assert "The tolerance is not kept there." in " ".join((wire / "c" / file).read_text().split())
+        assert "The discretisation does not keep the tolerance there." in " ".join(
+            (wire / "c" / file).read_text().split()
+        )
     assert read_scene(wire / "c" / "scene.toml").accuracy.chosen_for is None
 
 
@@ -852,8 +854,8 @@ def test_check_and_solve_name_joints_that_hold_a_loop_in_its_plane_alone(tmp_pat
     (tmp_path / "slide.toml").write_text(LOOPS["slide at the tip"])
     flat, spatial = (cosserat("check", name, cwd=tmp_path) for name in ("crank.toml", "slide.toml"))
     assert flat.returncode == spatial.returncode == 0, flat.stderr + spatial.stderr
-    note = "Note: end closes a loop in a plane and holds nothing across it"
+    note = "Note: end closes a loop in a plane and holds nothing across the plane"
     assert note in " ".join(flat.stdout.split())
     # The table of the solution has the loads that the note is about.
     assert note in " ".join(cosserat("solve", "crank.toml", cwd=tmp_path).stdout.split())
-    assert "holds nothing across it" not in " ".join(spatial.stdout.split())
+    assert "holds nothing across the plane" not in " ".join(spatial.stdout.split())

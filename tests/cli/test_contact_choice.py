@@ -71,12 +71,14 @@ def test_an_export_in_contact_that_misses_the_tolerance_says_so(bar: Path) -> No
     (bar / "cases.csv").write_text("push.force.z\n-4\n-2\n")
     done = cosserat("export", "bar.toml", "--output", "c", *fixed, "--over", "cases.csv", cwd=bar)
     assert done.returncode == 3, done.stdout + done.stderr
-    assert "does not keep the tolerance all over the ranges" in " ".join(done.stderr.split())
+    assert "does not keep the tolerance everywhere in the ranges" in " ".join(done.stderr.split())
     verified = json.loads((bar / "c" / "manifest.json").read_text())["verified"]
     assert verified["within_tolerance"] is False
     assert verified["solves"] == 3
     assert verified["ranges"] == ["push.force.z=-4:-2"]
-    assert "The tolerance is not kept there." in " ".join((bar / "c" / "bar.h").read_text().split())
+    assert "The discretisation does not keep the tolerance there." in " ".join(
+        (bar / "c" / "bar.h").read_text().split()
+    )
 
 
 # What is printed of a choice of modes where an equilibrium is missing, or an error is not known.
@@ -105,4 +107,6 @@ def test_cases_without_an_equilibrium_are_not_within_the_tolerance(choice: Choic
 def test_an_error_that_is_not_known_is_no_number(choice: Choice) -> None:
     unknown = replace(choice, error_estimate=UNKNOWN, met=False)
     assert "estimated error not known" in printed(unknown)
-    assert "their error is not known. The tolerance is not kept there." in unknown.verified.sentence
+    assert (
+        "their error is not known. The discretisation does not keep the tolerance there." in unknown.verified.sentence
+    )

@@ -64,6 +64,6 @@ def test_a_command_that_does_not_hear_is_ended(
             process.send_signal(number)
         _, said = process.communicate(timeout=120)
     assert process.returncode == code
-    assert said == "Stopped. Files that were not finished were not written.\n"
+    assert said == "Stopped. Unfinished files were not written.\n"
     # What was temporary has gone with it.
     assert not Path((tmp_path / "temporary").read_text()).exists()

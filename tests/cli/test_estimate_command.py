@@ -64,5 +64,5 @@ def test_refusals_write_nothing(folder: Path, capsys: pytest.CaptureFixture[str]
     scene = folder / "felt_loads.toml"
     scene.write_text(scene.read_text().replace('input = "touch.force"', 'parameter = "touch.at"'))
     assert estimate(folder, "--output", str(folder / "felt.json")) == REFUSED
-    assert "of which lower or upper is missing" in capsys.readouterr().err
+    assert "but its lower or upper is missing" in capsys.readouterr().err
     assert not list(folder.glob("felt.*"))

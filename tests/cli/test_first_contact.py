@@ -81,7 +81,7 @@ def test_new_never_overwrites(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     file.write_text("mine")
     assert cosserat("new", str(file)) == 2
     assert file.read_text() == "mine"
-    assert "is there already" in capsys.readouterr().err
+    assert "exists already" in capsys.readouterr().err
 
 
 def test_new_refuses_a_folder_that_is_not_there(tmp_path: Path) -> None:
@@ -185,8 +185,8 @@ def test_copies_do_not_overwrite(tmp_path: Path, capsys: pytest.CaptureFixture[s
         (tmp_path / f"{name}.toml").write_text("mine")
     assert cosserat("examples", "--output", str(tmp_path)) == 2
     problems = capsys.readouterr().err
-    assert "deep_arch.toml is there already" in problems
-    assert "soft_arm.toml is there already" in problems
+    assert "deep_arch.toml exists already" in problems
+    assert "soft_arm.toml exists already" in problems
     assert sorted(file.name for file in tmp_path.iterdir()) == ["deep_arch.toml", "soft_arm.toml"]
 
 

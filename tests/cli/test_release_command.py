@@ -50,7 +50,7 @@ def test_a_rod_is_let_go_from_the_result_of_solve(tmp_path: Path, monkeypatch: p
     # A quarter of the longest period is 0.22 s.
     assert tip[0][0] > tip[1][0] > tip[2][0]
     assert motion["inputs"]["hand.force"][0] == [0.0, 0.0, 0.0]
-    assert motion["start"] == "At rest in the equilibrium that was given."
+    assert motion["start"] == "At rest in the given equilibrium."
 
 
 def test_a_load_that_is_no_input_cannot_be_let_go(

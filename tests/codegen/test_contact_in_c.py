@@ -641,7 +641,7 @@ def test_refused_uses(tmp_path: Path) -> None:
     """What C does not have of exact contact is refused, with all faults at once, and nothing is written."""
     wanted = over_bar()
     model = build(wanted, discretise(wanted, 1, 2))
-    with pytest.raises(ExportError, match="no batches on a GPU"):
+    with pytest.raises(ExportError, match="a GPU cannot solve batches"):
         export(model, tmp_path / "folder", dynamics=True, cuda=True)
     with pytest.raises(ExportError, match=r"of shape \(k, 3\), got shape \(1, 2\)"):
         export(model, tmp_path / "folder", load_cases=np.zeros((1, 2)))
@@ -652,7 +652,8 @@ def test_refused_uses(tmp_path: Path) -> None:
     hook = {"name": "hook", "kind": "point_wrench", "rod": "rod", "at": 0.4, "force": [0, 0, -1.0]}
     named_scene = scene(rods=[round_rod], loads=[hook], obstacles=[BAR], parameters=named)
     with pytest.raises(
-        ExportError, match=r"section.radius: C has lengths and sections(?s:.*)hook.at would move ends of elements"
+        ExportError,
+        match=r"section.radius cannot change: in exact contact C has(?s:.*)hook.at would move ends of elements",
     ):
         check_contact(named_scene, {})
     wall = {"name": "wall", "kind": "plane", "point": [2.0, 0, 0], "normal": [-1, 0, 0], "bodies": ["head"]}
@@ -667,7 +668,9 @@ def test_refused_uses(tmp_path: Path) -> None:
     with pytest.raises(ExportError) as refused:
         check_contact(scene(rods=[FLAT], loads=[PUSH], **carried), {})
     (problem,) = refused.value.problems
-    assert problem.problem == "head.radius is the surface of what touches exactly, which C has in numbers"
+    assert (
+        problem.problem == "head.radius cannot change: C has the surfaces of bodies in exact contact as fixed numbers"
+    )
     free = scene(rods=[rod("planar")])
     with pytest.raises(ExportError, match="no rod of this scene touches an obstacle exactly"):
         export(build(free, discretise(free, 1, 2)), tmp_path / "folder", load_cases=np.zeros((1, 0)))

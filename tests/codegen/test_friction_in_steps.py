@@ -376,7 +376,7 @@ def test_blows_without_loss_tend_to_the_blow_without_friction(tmp_path: Path) ->
 
 
 def test_a_slip_speed_is_refused_without_a_width() -> None:
-    with pytest.raises(SceneError, match="is of a contact that is smooth"):
+    with pytest.raises(SceneError, match="describes a smooth contact"):
         scene_from_dict(block(0.3, slip_speed=1e-3))
 
 

@@ -373,10 +373,10 @@ def test_a_blow_has_no_derivative_and_a_wire_is_not_passed(tmp_path: Path) -> No
 
 def test_functions_of_equilibria_and_lengths_as_parameters_are_refused(tmp_path: Path) -> None:
     tables = scene(BALL)
-    with pytest.raises(ExportError, match="in a folder of their own"):
+    with pytest.raises(ExportError, match="a folder with --dynamics has no"):
         export(build(scene_from_dict(tables), moving=True), tmp_path / "robot", dynamics=True, stability=True)
     tables["parameters"] = ["rod.length"]
-    with pytest.raises(ExportError, match="lengths and sections of rods in exact contact in numbers"):
+    with pytest.raises(ExportError, match="lengths and sections of rods as fixed numbers"):
         export(build(scene_from_dict(tables), moving=True), tmp_path / "robot", dynamics=True)
 
 

@@ -287,7 +287,7 @@ def test_what_knows_of_no_contact_refuses_obstacles(table: Solution) -> None:
         lambda: make_plan(scene, None, None, None, quick=True),
     ]
     for use in uses:
-        with pytest.raises(SceneError, match="does not look for contact"):
+        with pytest.raises(SceneError, match="finds no exact contact"):
             use()
 
 
@@ -623,7 +623,7 @@ def test_refused_scenes(change: str) -> None:
 
 
 def test_refused_starts(table: Solution) -> None:
-    with pytest.raises(ValueError, match="found by continuation"):
+    with pytest.raises(ValueError, match="only continuation finds contacts"):
         solve(table.model, method="rootfinder")
     with pytest.raises(ValueError, match="unknowns name no contacts"):
         solve(table.model, start=table.x)

@@ -262,12 +262,12 @@ def test_a_rod_on_disks_slides_as_a_point_mass() -> None:
         (
             {**HARD, "kind": "sphere", "centre": [0.3, 0, -1], "radius": 0.5, "point": None, "normal": None},
             "obstacles[0].disks[0]",
-            "'d' has a rim, and where a rim meets a curved obstacle no closed form tells",
+            "'d' has a rim, and no closed form says where a rim meets a curved obstacle",
         ),
         (
             {**HARD, "parameters": ("d.radius",)},
             "obstacles[0].disks[0]",
-            "disks of 'd' touch exactly, and their numbers are no parameters",
+            "disks of 'd' touch exactly, and their numbers cannot be parameters",
         ),
         ({"disks": ["e"]}, "obstacles[0].disks[0]", "no row of disks is named 'e'"),
     ],

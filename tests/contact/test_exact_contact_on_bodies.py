@@ -411,5 +411,5 @@ def test_an_obstacle_is_drawn_where_its_body_is(touching: Solution) -> None:
 
 
 def test_what_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(ExportError, match="exact contact with an obstacle on a body, or of a disk, is not found in C"):
+    with pytest.raises(ExportError, match="C finds no exact contact with an obstacle on a body, nor of a disk"):
         export(build(parse_scene(FINGERS)), tmp_path / "fingers", "fingers")

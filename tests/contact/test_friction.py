@@ -203,7 +203,7 @@ def test_a_snake_crawls_as_fast_as_that_of_pyelastica() -> None:
 REFUSED = {
     "a slip speed without width": (
         {"width": None, "stiffness": None},
-        "without width contact is exact",
+        "contact without a width is exact",
     ),
     "a coefficient below zero": ({"friction": -0.1}, "friction"),
     "a direction that there is not": ({"friction": {"along": 0.1, "sideways": 0.2}}, "sideways"),

@@ -378,7 +378,7 @@ def test_a_scene_pays_only_for_what_moves_with_a_body() -> None:
 
 REFUSED = {
     "no rods": (DISK.replace('rods = ["pushed"]\n', ""), "obstacles[0].rods: missing"),
-    "bodies too": (DISK + 'bodies = ["ball"]\n', "keeps off rods alone"),
+    "bodies too": (DISK + 'bodies = ["ball"]\n', "keeps off only rods"),
     "no such body": (DISK.replace('body = "ball"', 'body = "bell"'), "no body is named 'bell'"),
     "its own rod": (DISK.replace('["pushed"]', '["pusher"]'), "'pusher' is held by its body 0.05 m inside it"),
 }

@@ -529,12 +529,16 @@ def test_the_scene_with_exact_contact_keeps_its_bodies() -> None:
 LUMEN = 'name = "it"\nkind = "lumen"\npoints = [[0, 0, -0.1], [0, 0, 0.2]]\nradius = 0.01\nrods = ["rod"]\n'
 
 REFUSED = {
-    "no width": (TABLE.replace("width = 0.01", "stiffness = 10.0"), "obstacles[0].stiffness", "without width contact"),
+    "no width": (
+        TABLE.replace("width = 0.01", "stiffness = 10.0"),
+        "obstacles[0].stiffness",
+        "contact without a width",
+    ),
     "negative": (TABLE.replace("0.01", "-0.01"), "obstacles[0].width", "must be > 0"),
     "some without": (
         TABLE + TABLE.replace('"table"', '"other"').replace("width = 0.01", ""),
         "obstacles[1].width",
-        "other obstacles have one",
+        "other obstacles have a width",
     ),
     "thick": (
         f'[[obstacles]]\nname = "it"\n{OBSTACLES["sphere"]}\nwidth = 0.2\n',
@@ -976,7 +980,7 @@ def test_a_fit_takes_no_rod_through_a_wire() -> None:
     position, _, _ = model.at(found.shared).tip["rod"](found.unknowns_x[0], found.inputs[0])
     assert -0.2 < float(position[2]) < -0.1
     assert found.at_bounds == ("rod.stiffness.bending_y",)
-    assert any("through an obstacle or a rod were refused" in warning for warning in found.warnings)
+    assert any("refused steps through an obstacle or a rod" in warning for warning in found.warnings)
 
 
 def test_a_path_on_which_a_rod_is_pushed_through_is_not_resolved(pressed: Solution) -> None:

@@ -265,7 +265,7 @@ def test_refusals() -> None:
     target = {"kind": "position", "rod": "rod", "position": [0, 0, 1]}
     with pytest.raises(SceneError, match=r"targets: missing"):
         inverse(build(scene(push(), inputs=["push.force"])))
-    with pytest.raises(SceneError, match="no input is named that could be found"):
+    with pytest.raises(SceneError, match="no input is left to find"):
         inverse(build(scene(push(), targets=[target])))
     cable = {"name": "cable", "kind": "tendon", "rod": "rod", "tension": 5.0, "offset": [0.01, 0.0]}
     bounds = [{"input": "cable.tension", "upper": -1.0}]

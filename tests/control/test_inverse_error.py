@@ -14,7 +14,7 @@ from numpy.testing import assert_allclose
 from rich.console import Console
 
 from cosserat_casadi import Inverse, Scene, build, inverse, scene_from_dict, solve
-from cosserat_casadi.cli.reports.inverse_table import print_inverse_table
+from cosserat_casadi.cli.commands.inverse import print_inverse_table
 from cosserat_casadi.cli.reports.solution import print_inverse
 from cosserat_casadi.control.inverse_accuracy import inverse_rows
 from cosserat_casadi.control.target_table import TargetTable, read_targets
@@ -69,7 +69,7 @@ def test_the_error_of_the_closest_pose_is_told() -> None:
     """Far outside of what the rod reaches, on a model that is not the rod either."""
     found = inverse(build(wanted((0.9, 0.0, 0.9), modes=1, nodes=4, tolerance=1e-6)), starts=0)
     assert not found.met
-    assert "The targets are not all met" in found.solution.message
+    assert "Not all targets are met" in found.solution.message
     assert "is above the tolerance of 1e-06; the scene fixes its modes" in found.solution.message
 
 

@@ -55,7 +55,7 @@ def test_inputs_of_a_solve_are_found_over_a_change_of_contacts(push: float) -> N
 def test_a_target_inside_the_ball_is_missed_by_a_rod_that_does_not_enter_it() -> None:
     found = inverse(build(over_ball([0.45, 0, -0.1])), starts=0, estimate_error=False)
     assert not found.met
-    assert "closest that was found misses" in found.solution.message
+    assert "closest result misses" in found.solution.message
     ((rod, obstacle),) = pairs(found.solution.model.scene)
     assert gap_along(found.solution, rod, obstacle, np.linspace(0, 1, 101)).min() > -1e-6
 

@@ -155,7 +155,7 @@ def test_a_row_out_of_reach_leaves_the_others_alone(tmp_path: Path) -> None:
     [
         (POSITION, "x,y\n1,2\n", "has no column z"),
         (POSITION, "x,y,z,u\n1,2,3,4\n", "has an unknown column u"),
-        (POSITION, "x,y,z,qw,qx,qy,qz\n1,2,3,1,0,0,0\n", "has orientations, but the target leaves them free"),
+        (POSITION, "x,y,z,qw,qx,qy,qz\n1,2,3,1,0,0,0\n", "has orientations, but the target leaves orientations free"),
         (POSE, "x,y,z,qw,qx,qy\n1,2,3,1,0,0\n", "has no column qz"),
         (
             POSE,

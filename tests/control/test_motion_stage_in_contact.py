@@ -220,7 +220,7 @@ def test_a_condensed_horizon_closes_in_contact() -> None:
 def test_what_throws_back_is_refused() -> None:
     model = falling()
     for method in (radau(2), gauss(1)):
-        with pytest.raises(SceneError, match="throws back what meets an obstacle without restitution"):
+        with pytest.raises(SceneError, match="throws rods and bodies back that meet an obstacle without restitution"):
             motion_stage(model, 0.01, method)
     with pytest.raises(SceneError, match="sections: must be 1 or more, got 0"):
         motion_stage(model, 0.01, sections=0)

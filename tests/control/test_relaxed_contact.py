@@ -200,7 +200,7 @@ def test_sections_move_to_contacts_in_order() -> None:
 def test_what_has_no_relaxed_contact_is_refused() -> None:
     model, near, contact = robot()
     free = build(scene_from_dict({**ROBOT, "obstacles": []}))
-    with pytest.raises(SceneError, match="none is touched exactly"):
+    with pytest.raises(SceneError, match="no rod touches exactly"):
         relaxed_contact(free)
     with pytest.raises(SceneError, match="must be 1 or more"):
         relaxed_contact(model, 0)

@@ -256,10 +256,10 @@ OVER_TIME = {
     ("changes", "message"),
     [
         ({"unknowns": [{"input": "push.force"}]}, "the same in all rows"),
-        ({"unknowns": []}, "name what is to be felt"),
+        ({"unknowns": []}, "name the unknowns to estimate"),
         ({"measurements": []}, "say what was measured"),
-        ({"measurements": [FREQUENCY]}, "none of their vibrations"),
-        ({"measurements": [OVER_TIME], "simulation": {"duration": 1.0}}, "and no motion"),
+        ({"measurements": [FREQUENCY]}, "not their vibrations"),
+        ({"measurements": [OVER_TIME], "simulation": {"duration": 1.0}}, "only, no motion"),
     ],
 )
 def test_scenes_that_ask_for_something_else_are_refused(changes: dict[str, Any], message: str) -> None:

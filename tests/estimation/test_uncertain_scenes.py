@@ -203,9 +203,9 @@ def test_a_shared_number_at_its_bound_stays_there_while_others_settle() -> None:
 
 def test_numbers_that_all_rows_share_need_a_prior() -> None:
     model = model_of(FELT, {"parameter": STIFFNESS})
-    with pytest.raises(SceneError, match="nothing is known of it beforehand"):
+    with pytest.raises(SceneError, match="has no prior"):
         estimate(model, {})
-    with pytest.raises(SceneError, match="none differs from row to row"):
+    with pytest.raises(SceneError, match="no unknown differs from row to row"):
         estimate(model_of(ROUGHLY), {})
 
 

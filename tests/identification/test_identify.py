@@ -149,7 +149,7 @@ def test_a_prior_settles_what_the_data_leave_open(shapes: MadeUp) -> None:
     # E carries four times the relative deviation of the radius.
     assert_allclose(found.sigma[0] / found.shared[0], 4e-2, rtol=1e-2, atol=0)
     assert len(found.statistics.unseen) == 1
-    assert any("priors alone" in warning for warning in found.warnings)
+    assert any("only the priors do" in warning for warning in found.warnings)
 
 
 def test_a_parameter_that_no_datum_sees_is_named(shapes: MadeUp) -> None:

@@ -108,7 +108,7 @@ def test_the_least_misfit_may_be_where_a_contact_comes_or_goes() -> None:
     assert found.converged and found.iterations < 30, found.message
     # Contacts hold to the tolerance of the scene.
     assert_allclose(found.shared, [modulus], rtol=1e-4, atol=0)
-    (warning,) = [own for own in found.warnings if "just where contacts come" in own]
+    (warning,) = [own for own in found.warnings if "exactly where contacts come" in own]
     assert "a point of 'rod' on 'floor'" in warning
 
 
@@ -185,5 +185,5 @@ def test_what_moves_is_refused_in_exact_contact() -> None:
         "inputs": {"weight.force.z": "weight"},
     }
     vibrating = measured(MODULUS, measurements=[frequency])
-    with pytest.raises(SceneError, match="is of a vibration"):
+    with pytest.raises(SceneError, match="belongs to a vibration"):
         identify(build(vibrating.with_unknowns()), {"markers.csv": {"f": np.ones(3), "weight": np.array(WEIGHTS)}})

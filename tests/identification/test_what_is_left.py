@@ -111,7 +111,7 @@ def test_unknowns_of_single_cases_that_no_datum_sees_are_named() -> None:
     assert np.all(np.abs(found.own[:, 1] - MOMENTS[:4]) < 4 * sigma[:, 1])
     (named,) = [warning for warning in found.warnings if "push.moment.x" in warning]
     assert named.startswith("The data do not determine push.moment.x in tips.csv, line 1, ")
-    assert any("only what these numbers leave is predicted" in warning for warning in found.warnings)
+    assert any("the prediction tests only the rest of these numbers" in warning for warning in found.warnings)
 
 
 def linear(noise_from: NoiseFrom, squares: float, count: int = 20) -> Statistics:

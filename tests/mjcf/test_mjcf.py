@@ -103,7 +103,7 @@ linear_density = 0.1
 stiffness_matrix = {coupled}]
 """
     told = mjcf_of(parse_scene(text), 4).left_out
-    assert any("what a law adds, and couples, is missing" in sentence for sentence in told), told
+    assert any("the rest of the law, and its coupling, is missing" in sentence for sentence in told), told
 
 
 def test_inputs_are_controls_with_the_values_of_the_scene() -> None:

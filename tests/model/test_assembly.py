@@ -194,7 +194,7 @@ def test_joints_that_over_constrain_are_refused() -> None:
             build(scene)
         (problem,) = refused.value.problems
         assert problem.where == "joints[1]"
-        assert "over-constrains: the tip of 'b' at 'plate'" in problem.problem
+        assert "over-constrains the tip of 'b' at 'plate'" in problem.problem
 
 
 def test_joints_are_checked_at_the_lengths_of_the_scene() -> None:

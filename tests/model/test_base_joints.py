@@ -138,7 +138,7 @@ def test_a_chain_of_planar_links_that_closes_out_of_its_plane_is_refused(change:
 def test_planar_rod_is_not_held_in_the_world_beside_its_plane() -> None:
     beside = {"world": True, "position": [0.1, 0.03, 0.4]}
     tables = scene([link("a")], [ends(beside, {"rod": "a"})], loads=[])
-    with pytest.raises(SceneError, match="over-constrains: the tip of 'a'"):
+    with pytest.raises(SceneError, match="over-constrains the tip of 'a'"):
         build(scene_from_dict(tables))
 
 
@@ -210,7 +210,7 @@ def test_a_rod_that_spins_on_a_ball_without_inertia_is_refused() -> None:
     bar = {"name": "a", "length": 0.3, "stiffness": {"bending_y": 0.5}, "strain": "planar", "linear_density": 0.1}
     ball = {"rod": "a", "at": 0.0, "kind": "spherical"}
     simulation = {"duration": 0.1}
-    with pytest.raises(SceneError, match=r"rods\[0\].rotary_inertia.*resists a spin"):
+    with pytest.raises(SceneError, match=r"rods\[0\].rotary_inertia.*nothing resists a spin"):
         scene_from_dict(scene([bar], [ball], simulation=simulation))
     scene_from_dict(scene([{**bar, "rotary_inertia": [0, 0, 1e-6]}], [ball], simulation=simulation))
     scene_from_dict(scene([bar], [hinge()], simulation=simulation))

@@ -103,7 +103,7 @@ def test_equilibria_and_paths_say_that_they_have_no_friction() -> None:
     ("joint", "where", "problem"),
     [
         ({"angle": 0.1, "friction": 1.0}, "friction", "stands beside angle"),
-        ({"slip_rate": 0.1}, "slip_rate", "is of friction, and the joint has none"),
+        ({"slip_rate": 0.1}, "slip_rate", "belongs to friction, and the joint has none"),
         ({"friction": -0.1}, "friction", "must be >= 0, got -0.1"),
     ],
 )

@@ -238,11 +238,11 @@ def test_in_c(tmp_path: Path) -> None:
     [
         ({"angle": 0.1, "upper_stop": 1.0}, "upper_stop", "stands beside angle"),
         ({"lower_stop": 0.2, "upper_stop": 0.2}, "upper_stop", "must be > lower_stop = 0.2, got 0.2"),
-        ({"restitution": 0.2}, "restitution", "is of a stop, and the joint has none"),
+        ({"restitution": 0.2}, "restitution", "belongs to a stop, and the joint has none"),
         (
             {"upper_stop": 0.2, "restitution": 0.2, "stop_stiffness": 3.0},
             "restitution",
-            "stands beside stop_stiffness, and an elastic stop gives back what it took",
+            "stands beside stop_stiffness, and an elastic stop returns all energy",
         ),
     ],
 )

@@ -25,7 +25,7 @@ def test_near_places_are_solved(places: tuple[float, float]) -> None:
 
 @pytest.mark.parametrize("places", [(0.3, 0.1 + 0.2), (1e-320, 0.5), (1e-155, 0.5), (0.5, 1.0 - 1e-16)])
 def test_places_with_nothing_between_them_are_refused(places: tuple[float, float]) -> None:
-    with pytest.raises(SceneError, match=r"rod: its elements would end at .* and at .*, too near each other"):
+    with pytest.raises(SceneError, match=r"rod: its elements would end at .* and at .*, too close to each other"):
         build(pulled_at(*places))
 
 

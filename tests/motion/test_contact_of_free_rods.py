@@ -530,7 +530,7 @@ def test_a_rod_that_is_laid_down_because_its_contacts_change_too_often_is_told(m
     times = [event.time for event in forced.events if event.kind == "laid_down"]
     assert times
     (warning,) = forced.warnings
-    assert "'rod' with 'floor' changed over and over in next to no time" in warning
+    assert "'rod' with 'floor' changed over and over within almost no time" in warning
     assert f"({len(times)} times, first at t = {times[0]:.6g} s)" in warning
 
 

@@ -393,6 +393,4 @@ def test_a_blow_on_a_rod_that_turns_about_itself_without_inertia_is_told() -> No
     (inertia,) = [line for line in text.splitlines() if line.startswith("rotary_inertia")]
     light = simulate(moving(text.replace(inertia, "")))
     assert light.outcome is MotionOutcome.STEP_TOO_SMALL
-    assert light.message.endswith(
-        "A blow turns 'rod' about itself, and nothing resists: give it a rotary_inertia, kg m."
-    )
+    assert light.message.endswith("A blow spins 'rod' about the tangent without resistance: give rotary_inertia, kg m.")

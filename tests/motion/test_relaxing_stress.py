@@ -253,7 +253,7 @@ def test_a_model_at_rest_says_that_it_has_no_stress_that_relaxes() -> None:
     [
         ({"prony": [{"share": 0.6, "time": 0.1}, {"share": 0.4, "time": 0.2}]}, "add up to less than 1"),
         ({"prony": [{"share": 0.6, "time": 0.1}, {"share": 0.1, "torsion": 0.4, "time": 0.2}]}, "less than 1"),
-        ({"prony": [{"share": 0.1, "extension": 0.4, "time": 0.2}]}, r"prony\[0\].extension: is of a strain"),
+        ({"prony": [{"share": 0.1, "extension": 0.4, "time": 0.2}]}, r"prony\[0\].extension: belongs to a strain"),
         ({"prony": [{"share": 0.0, "time": 0.1}]}, "share"),
         ({"prony": [{"share": 0.5, "time": 0.0}]}, "time"),
         ({"prony": []}, "retardation_time"),

@@ -42,5 +42,5 @@ def test_nothing_is_lost_in_elastic_blows() -> None:
 
 
 def test_smooth_contact_has_no_restitution() -> None:
-    with pytest.raises(SceneError, match="is of impacts"):
+    with pytest.raises(SceneError, match="describes impacts"):
         parse_scene(rod(f"{BALL}, restitution = 0.5, width = 1e-3"))

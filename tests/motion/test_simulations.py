@@ -212,7 +212,7 @@ def test_scene_without_equilibrium_has_no_start() -> None:
     assert motion.message.startswith(MotionOutcome.NO_START.value)
     assert motion.times.shape == (0,)
     assert motion.tip().position.shape == (0, 3)
-    with pytest.raises(ValueError, match="not started"):
+    with pytest.raises(ValueError, match="did not start"):
         motion.at(0.0)
 
 
@@ -283,7 +283,7 @@ def test_interrupted_search_keeps_the_best_whole_motion() -> None:
     motion = simulate(scene_from_dict(scene), progress=tell)
     assert motion.outcome is MotionOutcome.INTERRUPTED
     assert len(motion.times) == 101
-    assert "whole, but not as exact as was asked: its modes leave an error of about" in motion.message
+    assert "whole, but not as exact as was asked: the modes leave an error of about" in motion.message
     whole = simulate(scene_from_dict(scene))
     apart = np.linalg.norm(motion.tip().position - whole.tip().position, axis=1).max()
     assert apart < motion.error_estimate < 0.1
@@ -371,7 +371,7 @@ def test_a_free_pair_in_line_that_nothing_keeps_from_spinning_is_told() -> None:
     motion = simulated({**scene, "simulation": asked(start="unloaded")})
     assert motion.outcome is MotionOutcome.STEP_TOO_SMALL
     assert motion.message.endswith(
-        "Nothing resists a spin about the axis of 'first', 'second': give rotary_inertia, kg m."
+        "'first', 'second' can spin about the tangent without resistance: give rotary_inertia, kg m."
     )
     for one in (first, second):
         one["rotary_inertia"] = [1e-6, 1e-6, 2e-6]

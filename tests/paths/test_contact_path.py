@@ -268,7 +268,7 @@ def test_without_a_next_arrangement_the_path_ends_and_says_so(monkeypatch: pytes
     path = followed(TABLE, "weight.acceleration", [0, 0, -9.81], 4)
     assert not path.converged
     assert path.outcome.label == "contact_unsettled"
-    assert "no arrangement of contacts" in path.message
+    assert "no set of contacts" in path.message
     assert len(path.factor) > 2
 
 

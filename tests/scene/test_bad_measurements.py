@@ -119,7 +119,7 @@ REFUSED = {
     "per_row": (
         ROD + '[[unknowns]]\nparameter = "wire.length"\nper_row = true\n',
         "unknowns[0].per_row",
-        "of which lower or upper is missing",
+        "but its lower or upper is missing",
     ),
     "bounds": (
         ROD + '[[unknowns]]\nparameter = "wire.length"\nlower = 1.0\nupper = 1.0\n',

@@ -438,7 +438,7 @@ def test_bases_that_cannot_move() -> None:
     told = refusals(lambda: scene(rods=[rod(), carried, free], motions=motions))
     assert told == [
         "motions[0].input: 'second' starts on another rod (move the base of that one)",
-        "motions[1].input: the base of 'third' is free (nothing holds it: what acts on it are loads)",
+        "motions[1].input: the base of 'third' is free (nothing holds it, only loads act on it)",
     ]
 
 
@@ -482,7 +482,10 @@ def test_simulations_that_are_refused(case: str) -> None:
 BAD_RODS = {
     "both": ({"damping": {"retardation_time": 1.0, "torsion": 1.0}}, "damping.torsion: stands beside retardation_time"),
     "neither": ({"damping": {}}, "damping.retardation_time: missing"),
-    "not_admitted": ({"damping": {"extension": 1.0}}, "damping.extension: is of a strain that the rod does not admit"),
+    "not_admitted": (
+        {"damping": {"extension": 1.0}},
+        "damping.extension: belongs to a strain that the rod does not admit",
+    ),
     "negative_time": ({"damping": {"retardation_time": -1.0}}, "damping.retardation_time: must be >= 0, got -1.0"),
     "negative": ({"damping": {"torsion": [0.0, -1.0]}}, "damping.torsion[1]: must be >= 0, got -1.0"),
     "inertia_of_section": ({**SECTION, "rotary_inertia": [1, 1, 2]}, "rotary_inertia: stands beside material and sec"),

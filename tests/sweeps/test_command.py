@@ -68,7 +68,7 @@ def refused(folder: Path, *words: str) -> str:
         ),
         (
             ("--output", "a.csv", "--sobol", "i.json", "--range", "push.force.x=0:1:2"),
-            ["--sobol: is of random columns, and --over is missing"],
+            ["--sobol: needs random columns, and --over is missing"],
         ),
         (("--output", "no/a.csv", "--plot", "a.bmp", "--over", "b.csv"), ["folder no", "--plot", "b.csv: cannot be"]),
     ],

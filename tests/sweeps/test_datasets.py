@@ -67,13 +67,13 @@ def test_a_dataset_is_finished_once_and_left_alone(tmp_path: Path) -> None:
     assert plan.finished
     assert_array_equal(sweep(PLANAR, TABLE, output).values, found.values)
     assert part.stat().st_mtime_ns == written
-    with pytest.raises(SceneError, match=r"rows\.dataset exists, and is not of this sweep"):
+    with pytest.raises(SceneError, match=r"rows\.dataset exists, and does not belong to this sweep"):
         plan_sweep(PLANAR, table_of({"push.force.x": [0.3]}), output)
 
 
 def test_folders_that_are_not_ours_are_left_alone(tmp_path: Path) -> None:
     (tmp_path / "mine.dataset").mkdir()
-    with pytest.raises(SceneError, match=r"mine\.dataset exists, and is not of this sweep"):
+    with pytest.raises(SceneError, match=r"mine\.dataset exists, and does not belong to this sweep"):
         plan_sweep(PLANAR, table_of(TABLE), tmp_path / "mine.dataset")
     (tmp_path / "mine.parquet").mkdir()
     with pytest.raises(SceneError, match=r"mine\.parquet is a folder"):
@@ -125,8 +125,8 @@ def test_parquet_files_of_others_are_refused(tmp_path: Path) -> None:
 
     file = tmp_path / "rows.parquet"
     for outcomes, numbers, said in (
-        (["converged", "lost"], [0.0, 1.0], "an outcome is none that a row can have"),
-        (["converged", None], [0.0, 1.0], "an outcome is none that a row can have"),
+        (["converged", "lost"], [0.0, 1.0], "an outcome is not one that a row can have"),
+        (["converged", None], [0.0, 1.0], "an outcome is not one that a row can have"),
         (["converged", "converged"], ["a", "b"], "rows.parquet: cannot be read as the results of a sweep"),
         (["converged", "converged"], [[1.0], [2.0]], "rows.parquet: cannot be read as the results of a sweep"),
     ):

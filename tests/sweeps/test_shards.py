@@ -92,16 +92,16 @@ def test_shards_that_are_no_whole_sweep_are_refused(tmp_path: Path) -> None:
     with pytest.raises(SceneError, match="missing: 2/3, 3/3"):
         merge_shards(plan)
     other = plan_sweep(PLANAR, table_of({"push.force.x": FORCES[:3]}), output)
-    with pytest.raises(SceneError, match="is of another sweep"):
+    with pytest.raises(SceneError, match="belongs to another sweep"):
         run_shard(other, Shard(1, 3), cores=1)
-    with pytest.raises(SceneError, match="of another sweep, or damaged: 1/3"):
+    with pytest.raises(SceneError, match="from another sweep, or damaged: 1/3"):
         merge_shards(other)
     for number in (2, 3):
         run_shard(plan, Shard(number, 3), cores=1)
     file = Shard(2, 3).file(output)
     content = file.read_bytes()
     file.write_bytes(content[:-50])
-    with pytest.raises(SceneError, match="not done to the end: 2/3"):
+    with pytest.raises(SceneError, match="not finished: 2/3"):
         merge_shards(plan)
     # The shard goes on behind what is sound.
     run_shard(plan, Shard(2, 3), cores=1)
@@ -144,8 +144,8 @@ def test_command(tmp_path: Path) -> None:
     words = ["sweep", "scene.toml", "--over", "rows.csv", "--output", "found.csv"]
     refused = cosserat(*words, "--shard", "1/2", "--merge", "--plot", "a.png", cwd=tmp_path)
     assert refused.returncode == REFUSED
-    assert "is for all shards together" in refused.stderr
-    assert "is of all rows" in refused.stderr
+    assert "needs all shards together" in refused.stderr
+    assert "shows all rows" in refused.stderr
     first = cosserat(*words, "--shard", "1/2", "--cores", "1", cwd=tmp_path)
     assert first.returncode == 0
     assert "Shard 1/2: 2 rows kept in found.csv.shard-1-of-2" in " ".join(first.stdout.split())
@@ -154,7 +154,7 @@ def test_command(tmp_path: Path) -> None:
     # A job of an array that is started once more sees that all is done.
     again = cosserat(*words, "--shard", "1/2", cwd=tmp_path)
     assert again.returncode == 0
-    assert "found.csv holds this sweep already: nothing was computed" in " ".join(again.stdout.split())
+    assert "found.csv already holds this sweep: nothing was computed" in " ".join(again.stdout.split())
     assert not list(tmp_path.glob("*.shard-*"))
 
 

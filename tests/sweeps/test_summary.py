@@ -31,8 +31,8 @@ def summary(chosen: dict[str, Any], *checked: dict[str, Any]) -> str:
     [
         ({"error_estimate": 3e-5}, [FINE], "[3, 4], 9 intervals, chosen on 3 rows: estimated error 3.0e-05, within"),
         ({"error_estimate": 3e-3, "converged": 2}, [], "2 of which have an equilibrium: estimated error 3.0e-03, more"),
-        ({"error_estimate": None, "converged": 0}, [], "none of which has an equilibrium"),
-        ({"discretisation": None, "error_estimate": None}, [], "as the scene fixes them"),
+        ({"error_estimate": None, "converged": 0}, [], "but none has an equilibrium"),
+        ({"discretisation": None, "error_estimate": None}, [], "The scene fixes modes, nodes or rotation"),
         ({"error_estimate": 3e-5}, [FINE], "1 row solved again in Python: estimated error at most 2.0e-05, within"),
         ({"error_estimate": 3e-5}, [FINE], "poses differ by at most 1.0e-12."),
         ({"error_estimate": 3e-5}, [FINE | {"difference": 1.4e-63}], "poses differ by rounding alone."),

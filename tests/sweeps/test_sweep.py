@@ -310,15 +310,15 @@ def test_an_unfinished_sweep_whose_first_line_was_changed_is_refused(tmp_path: P
         (": 1", ": " + "9" * 400),
     ):
         part.write_text(sound.replace(old, new, 1))
-        assert "a.csv.part is of another sweep, which was not finished, or has been changed" in refused(output, table)
+        assert "a.csv.part belongs to another sweep, which was not finished, or was changed" in refused(output, table)
     part.write_text("[" * 100_000)
-    assert "has been changed" in refused(output, table)
+    assert "was changed" in refused(output, table)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a pipe of a POSIX system")
 def test_a_pipe_in_the_place_of_the_store_is_refused(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "a.csv.part")
-    assert "a.csv.part is of another sweep" in refused(tmp_path / "a.csv")
+    assert "a.csv.part belongs to another sweep" in refused(tmp_path / "a.csv")
 
 
 def test_a_finished_sweep_is_read_and_left_alone(tmp_path: Path) -> None:
@@ -345,11 +345,11 @@ def refused(output: Path, table: dict[str, list[float]] | None = None) -> str:
 
 def test_files_that_are_not_ours_are_left_alone(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text("mine")
-    assert "a.csv exists, and is not of this sweep" in refused(tmp_path / "a.csv")
+    assert "a.csv exists, and does not belong to this sweep" in refused(tmp_path / "a.csv")
     sweep(PLANAR, {"push.force.x": [0.3]}, tmp_path / "b.csv")
-    assert "b.csv exists, and is not of this sweep" in refused(tmp_path / "b.csv")
+    assert "b.csv exists, and does not belong to this sweep" in refused(tmp_path / "b.csv")
     (tmp_path / "c.csv.part").write_text("mine")
-    assert "c.csv.part is of another sweep" in refused(tmp_path / "c.csv")
+    assert "c.csv.part belongs to another sweep" in refused(tmp_path / "c.csv")
     (tmp_path / "d.csv.json").write_text("{}")
     assert "d.csv.json exists" in refused(tmp_path / "d.csv")
 

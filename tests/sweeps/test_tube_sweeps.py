@@ -118,6 +118,6 @@ def test_on_the_command_line(tmp_path: Path) -> None:
     record = json.loads((tmp_path / "rows.csv.json").read_text(encoding="utf-8"))
     assert record["tubes"] == ["outer", "inner"]
     again = cosserat(*command, cwd=tmp_path)
-    assert "holds this sweep already" in again.stdout
+    assert "already holds this sweep" in again.stdout
     refused = cosserat(*command[:-4], "--output", "other.csv", "--set", "accuracy.modes=3", cwd=tmp_path)
     assert refused.returncode == 2

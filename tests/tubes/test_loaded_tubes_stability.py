@@ -253,7 +253,7 @@ def test_a_path_begins_at_an_equilibrium_of_its_own_robot() -> None:
     with pytest.raises(SceneError, match="stands beside values"):
         follow(scene, "push.force.y", 1.0, {"push.force.x": 1.0}, first=solve(scene))
     of_rods = scene_of_rods(push(force=[0.0, 0.0, 0.0]))
-    with pytest.raises(SceneError, match="is for concentric tubes"):
+    with pytest.raises(SceneError, match="needs concentric tubes"):
         follow(of_rods, "push.force", [1.0, 0.0, 0.0], first=other)
 
 

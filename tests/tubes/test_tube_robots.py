@@ -431,18 +431,18 @@ def test_unstable_robots_are_told(tmp_path: Path) -> None:
         ("identify tubes.toml --output out.json", "name what is to be found"),
         ("estimate tubes.toml --output out.csv", "works on rods"),
         ("sweep tubes.toml --output out.csv --over t.csv --set tubes[1].translation=9", "must be at most the length"),
-        ("export tubes.toml --output out --dynamics", "is for rods"),
-        ("export tubes.toml --page out.html", "is for rods"),
+        ("export tubes.toml --output out --dynamics", "needs a scene of rods"),
+        ("export tubes.toml --page out.html", "needs a scene of rods"),
         ("tune tubes.toml --output out.toml --range inner.rotation=0:1", "works on rods"),
         ("view tubes.toml --range inner.rotation=0:1", "works on rods"),
-        ("path tubes.toml --input inner.rotation --to 3 --branch --output out.json", "is for rods"),
+        ("path tubes.toml --input inner.rotation --to 3 --branch --output out.json", "needs a scene of rods"),
         ("path tubes.toml --input inner.turn --to 3 --output out.json", "is no input"),
         ("path tubes.toml --input inner.rotation --to [3,4] --output out.json", "must be one number"),
         ("path tubes.toml --input inner.rotation --to 2.0 --output out.json", "where the path begins"),
         ("path tubes.toml --input inner.translation --to 1.0 --output out.json", "to the length of the tube"),
-        ("check tubes.toml --time", "prices the effects of rods"),
-        ("solve tubes.toml --all --stable --output out.json", "stands beside --all"),
-        ("solve tubes.toml --exact-contact --output out.json", "is for rods"),
+        ("check tubes.toml --time", "times the effects of rods"),
+        ("solve tubes.toml --all --stable --output out.json", "cannot go with --all"),
+        ("solve tubes.toml --exact-contact --output out.json", "needs a scene of rods"),
     ],
 )
 def test_commands_that_refuse(line: str, words: str, tmp_path: Path) -> None:
@@ -458,5 +458,5 @@ def test_all_is_for_tubes(tmp_path: Path) -> None:
     (tmp_path / "rod.toml").write_text("schema = 1" + ROD)
     ended = cosserat("solve", "rod.toml", "--all", "--output", "out", cwd=tmp_path)
     assert ended.returncode == 2
-    assert "--all: is for concentric tubes" in ended.stderr
+    assert "--all: needs a scene of concentric tubes" in ended.stderr
     assert not (tmp_path / "out").exists()

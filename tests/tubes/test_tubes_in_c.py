@@ -421,7 +421,9 @@ def test_the_demo_prints_what_python_finds(robot: Robot, tmp_path: Path) -> None
 def test_refusals(robot: Robot, tmp_path: Path) -> None:
     with pytest.raises(ExportError, match="no name for a C library"):
         export(robot.solution.model, tmp_path / "folder", "a b")
-    with pytest.raises(ExportError, match=r"--derivatives: is for rods(?s:.*)--period: is for rods"):
+    with pytest.raises(
+        ExportError, match=r"--derivatives: needs a scene of rods(?s:.*)--period: needs a scene of rods"
+    ):
         export(robot.solution.model, tmp_path / "folder", derivatives=True, batches=True, period=1e-3)
     (tmp_path / "manifest.json").write_text('{"name": "robot", "inputs": [], "files": [], "tubes": [3], "unknowns": 2}')
     with pytest.raises(ExportError, match="is not the manifest of an exported folder"):
@@ -437,8 +439,8 @@ def test_on_the_command_line(tmp_path: Path) -> None:
     folder = tmp_path / "robot"
     refused = cosserat("export", "robot.toml", "--output", "robot", "--dynamics", "--stability", cwd=tmp_path)
     assert refused.returncode == 2
-    assert "--dynamics: is for rods" in refused.stderr
-    assert "--stability: is for rods" in refused.stderr
+    assert "--dynamics: needs a scene of rods" in refused.stderr
+    assert "--stability: needs a scene of rods" in refused.stderr
     assert not folder.exists()
     written = cosserat("export", "robot.toml", "--output", "robot", "--batches", cwd=tmp_path)
     assert written.returncode == 0, written.stderr

@@ -146,7 +146,7 @@ def test_contact_moves_under_the_slider(page: Any, session: ContactSession, firs
     assert "rod touches ball at X = 0." in page.inner_text("#readings")
     page.wait_for_function("() => window.robot.stable === true", timeout=PATIENCE)
     # What contact leaves out is not offered, and said.
-    assert "Contact is exact and is looked for anew with every move: about " in page.inner_text("#note")
+    assert "Contact is exact, and every move searches for it anew, which takes about " in page.inner_text("#note")
     assert page.get_by_label("derivatives").count() == 0
     assert page.locator("#hand").count() == 0
     assert page.get_by_role("button", name="Vibrations here").count() == 0

@@ -79,7 +79,7 @@ def test_the_tip_follows_the_hand_and_inverse_has_the_last_word(page: Any) -> No
     page.mouse.up()
     page.wait_for_function("() => 'met' in window.robot.state", timeout=PATIENCE)
     # One tendon leads the tip along a line: the point beside it is not reached, and the words say so.
-    assert "The targets are not all met" in page.inner_text("#status")
+    assert "Not all targets are met" in page.inner_text("#status")
     assert page.evaluate("window.robot.inputs['push.force.x']") == 0.3
 
 

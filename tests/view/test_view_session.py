@@ -111,7 +111,7 @@ def test_reaching_a_point_finds_the_inputs(session: ViewSession) -> None:
     assert_allclose(tip(answer), on_path, rtol=0, atol=1e-6)
     beside = session.reach({"rod": "rod"}, (start + np.array([0.1, 0.0, 0.1])).tolist())
     assert not beside["met"]
-    assert "not all met" in beside["text"]
+    assert "Not all targets are met" in beside["text"]
     tension = sliders(session.first.model)[3]
     assert tension.least <= beside["inputs"][3] <= tension.most
 

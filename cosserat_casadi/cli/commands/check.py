@@ -38,10 +38,10 @@ def check(
     ] = None,
     timed: Annotated[
         bool,
-        typer.Option("--time", help="Price each effect in compiled microseconds too; and a motion, not compiled."),
+        typer.Option("--time", help="Time each effect in compiled code too, and a motion without compiling it."),
     ] = False,
 ) -> None:
-    """Validate a scene, say which effects were chosen and what the model and each effect will cost."""
+    """Validate a scene, and list its effects with the cost of the model and of each effect."""
     overrides = tuple(settings or ())
     problems: list[Problem] = []
     check_figure(plot, "--plot", problems)
@@ -50,9 +50,9 @@ def check(
     check_inputs_stay({"--plot": plot}, scene, settings)
     if checked_scene.tubes:
         if ranges:
-            raise SceneError(Problem("--range", "is of rods, and the scene has tubes", "leave it out"))
+            raise SceneError(Problem("--range", "needs a scene of rods, and this scene has tubes", "leave it out"))
         if timed:
-            raise SceneError(Problem("--time", "prices the effects of rods, and the scene has tubes", "leave it out"))
+            raise SceneError(Problem("--time", "times the effects of rods, and this scene has tubes", "leave it out"))
         print_tubes_check(Console(), robot_of(checked_scene))
         return
     asked = asked_ranges(ranges, checked_scene)

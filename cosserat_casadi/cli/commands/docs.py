@@ -17,7 +17,8 @@ from cosserat_casadi.errors import Problem, SceneError
 
 def docs(
     page: Annotated[
-        str | None, typer.Argument(metavar="[PAGE]", help="Page to show; by default their list.", show_default=False)
+        str | None,
+        typer.Argument(metavar="[PAGE]", help="Page to show; the list by default.", show_default=False),
     ] = None,
 ) -> None:
     """Show a page of the documentation. Exit codes: 0 shown, 2 there is none of this name."""
@@ -28,7 +29,7 @@ def docs(
         for name, file in found.items():
             table.add_row(name, escape(page_title(file)))
         console.print(table)
-        console.print("Show one: cosserat docs PAGE")
+        console.print("To show a page: cosserat docs PAGE")
         return
     if page not in found:
         raise SceneError(Problem("PAGE", f"there is no page {page}", "cosserat docs lists them"))

@@ -27,14 +27,15 @@ FORMATS = (".json", ".csv")
 
 def estimate(
     scene: SceneFile,
-    output: Annotated[Path, typer.Option(help="Write what was felt in each row here: .json or .csv.")],
+    output: Annotated[Path, typer.Option(help="Write the estimates of all rows to this file: .json or .csv.")],
     plot: Annotated[
-        Path | None, typer.Option(help="Draw the unknowns over the rows, with intervals, here: .png, .pdf or .svg.")
+        Path | None,
+        typer.Option(help="Draw the unknowns of all rows, with intervals, here: .png, .pdf or .svg."),
     ] = None,
-    cores: Annotated[int | None, typer.Option(min=1, help="Cores of this machine to use; all by default.")] = None,
+    cores: Annotated[int | None, typer.Option(min=1, help="Number of cores to use; all by default.")] = None,
     settings: Settings = None,
 ) -> None:
-    """Find in every measured row what the robot feels: unknown inputs, with their standard deviations.
+    """Estimate the unknown inputs of every measured row, with their standard deviations.
 
     Exit codes: 0 each row has its outcome, 2 refused, 3 no row was found, or the tolerance is missed on rows checked.
     """

@@ -19,11 +19,11 @@ from cosserat_casadi.files import write_atomically
 def examples(
     names: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[NAME]…", help="Examples to copy; by default all.", show_default=False),
+        typer.Argument(metavar="[NAME]…", help="Examples to copy; all by default.", show_default=False),
     ] = None,
     output: Annotated[
         Path | None,
-        typer.Option(metavar="FOLDER", help="Copy them into this folder, which is made where it is missing."),
+        typer.Option(metavar="FOLDER", help="Copy the examples into this folder, which is created if needed."),
     ] = None,
 ) -> None:
     """List the examples that come with the package, or copy them. Exit codes: 0 done, 2 refused."""
@@ -47,7 +47,7 @@ def _print_list(chosen: list[Example]) -> None:
     for example in chosen:
         table.add_row(escape(example.name), escape(example.title))
     console.print(table)
-    console.print("Copy them: cosserat examples NAME… --output FOLDER")
+    console.print("To copy examples: cosserat examples NAME… --output FOLDER")
 
 
 def _copy(chosen: list[Example], folder: Path) -> None:
@@ -61,7 +61,7 @@ def _copy(chosen: list[Example], folder: Path) -> None:
     targets = {folder / source.relative_to(root): source.read_bytes() for source in sources}
     changed = [file for file, content in targets.items() if file.exists() and file.read_bytes() != content]
     remedy = "nothing is overwritten: remove it, or name another folder"
-    refuse(Problem("--output", f"{file} is there already, and differs", remedy) for file in changed)
+    refuse(Problem("--output", f"{file} exists already, and differs", remedy) for file in changed)
     for file, content in targets.items():
         file.parent.mkdir(parents=True, exist_ok=True)
         write_atomically(file, content)

@@ -45,7 +45,7 @@ from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.tubes.tube_solution import TubeSolution
 from cosserat_casadi.tubes.tube_solve import solve_tubes
 
-APART = "Modes are chosen for rods that pass through each other: contact of rods without a width acts in steps alone."
+APART = "Modes are chosen for rods that pass through each other: contact of rods without a width acts in motions only."
 """A sentence on motions in C of rods that touch each other exactly."""
 
 LOAD_CASES = 32
@@ -138,45 +138,46 @@ class Asked:
 def export(
     scene: SceneFile,
     output: Annotated[
-        Path | None, typer.Option(help="Folder to write: new, empty, or of an earlier export.", show_default=False)
+        Path | None,
+        typer.Option(help="Folder to write: new, empty, or of an earlier export.", show_default=False),
     ] = None,
     page: Annotated[
         Path | None,
-        typer.Option(help="HTML file to write: the robot with sliders, solved in the browser.", show_default=False),
+        typer.Option(help="HTML page to write: sliders move the robot, the browser solves it.", show_default=False),
     ] = None,
     fmu: Annotated[
         Path | None,
-        typer.Option(help="File to write for other simulators: the motion by FMI 3.0, .fmu.", show_default=False),
+        typer.Option(help="File to write for other simulators: an FMU (FMI 3.0) of the motion.", show_default=False),
     ] = None,
     mjcf: Annotated[
         Path | None,
-        typer.Option(help="File to write for MuJoCo: rods as chains of rigid links, .xml.", show_default=False),
+        typer.Option(help="File to write for MuJoCo, .xml: each rod is a chain of links.", show_default=False),
     ] = None,
-    links: Annotated[int, typer.Option(min=1, max=1000, help="Links of each rod in that file, about.")] = LINKS,
-    name: Annotated[str | None, typer.Option(help="What every C symbol begins with; else the scene file's.")] = None,
+    links: Annotated[int, typer.Option(min=1, max=1000, help="Rough number of links of each rod.")] = LINKS,
+    name: Annotated[str | None, typer.Option(help="Prefix of C symbols; by default that of the file.")] = None,
     derivatives: Annotated[
-        bool, typer.Option("--derivatives", help="With second derivatives, for CasADi: no controller needs them.")
+        bool, typer.Option("--derivatives", help="Add second derivatives for CasADi, which no controller needs.")
     ] = False,
     dynamics: Annotated[
-        bool, typer.Option("--dynamics", help="With motions: a step of fixed length with its derivatives.")
+        bool, typer.Option("--dynamics", help="Add motions: a step of fixed length with its derivatives.")
     ] = False,
     stability: Annotated[
-        bool, typer.Option("--stability", help="With a function that says whether an equilibrium is stable.")
+        bool, typer.Option("--stability", help="Add a function that says whether an equilibrium is stable.")
     ] = False,
     batches: Annotated[
         bool,
         typer.Option(
             "--batches",
-            help="With many load cases, solved four at a time in vectors of the processor where that is possible.",
+            help="Add a function for many load cases, solved four at a time in vectors of the processor if possible.",
         ),
     ] = False,
     cuda: Annotated[
         bool,
-        typer.Option("--cuda", help="With batches on a GPU: experimental, never run on one, of unmeasured speed."),
+        typer.Option("--cuda", help="Add batches on a GPU: experimental, they never ran on a GPU and were not timed."),
     ] = False,
     over: Annotated[
         Path | None,
-        typer.Option(help="Load cases whose exact contacts the sources know: a grid (TOML), or rows (CSV)."),
+        typer.Option(help="Load cases whose exact contacts the sources hold: a grid (TOML), or rows (CSV)."),
     ] = None,
     ranges: Ranges = None,
     samples: Annotated[
@@ -185,20 +186,21 @@ def export(
             min=1,
             max=10_000,
             help=(
-                f"Random corners, and random points, at which modes are chosen: {SAMPLES}. In exact contact load cases "
-                f"spread over the ranges: {LOAD_CASES}."
+                f"Number of random corners and of random points at which modes are chosen: {SAMPLES}. In exact "
+                f"contact, number of load cases in the ranges: {LOAD_CASES}."
             ),
             show_default=False,
         ),
     ] = None,
     period: Annotated[
         float | None,
-        typer.Option(help="Seconds that the longest turn of a control loop may take.", show_default=False),
+        typer.Option(help="Most time of a turn of a control loop, s.", show_default=False),
     ] = None,
     estimate_errors: Annotated[
         bool,
         typer.Option(
-            "--error-estimate/--no-error-estimate", help="With the estimate of the error of every answer, or without."
+            "--error-estimate/--no-error-estimate",
+            help="Add or leave out the estimate of each answer's error.",
         ),
     ] = True,
     settings: Settings = None,
@@ -353,7 +355,7 @@ def _write(
     if asked.fmu is not None:
         with Console(stderr=True).status("Compiling the FMU"):
             write_fmu(model, asked.fmu, asked.name, error_estimate=estimate, verified=verified)
-        console.print(f"wrote {escape(str(asked.fmu))}; simulators open it that know FMI 3.0", soft_wrap=True)
+        console.print(f"wrote {escape(str(asked.fmu))}; simulators that know FMI 3.0 open it", soft_wrap=True)
     if asked.page is not None:
         with Console(stderr=True).status("Compiling the page"):
             export_page(solution, asked.page, ranges, cases)

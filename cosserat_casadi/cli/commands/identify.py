@@ -31,17 +31,17 @@ ENDED_EARLY = "The numbers are those at which the search ended."
 def identify(
     scene: SceneFile,
     settings: Settings = None,
-    output: Annotated[Path | None, typer.Option(help="Write what was found (JSON) here.")] = None,
+    output: Annotated[Path | None, typer.Option(help="Write the result (JSON) here.")] = None,
     plot: Annotated[
         Path | None, typer.Option(help="Draw measurements, residuals and ellipses here: .png, .pdf or .svg.")
     ] = None,
     hold_out: Annotated[
-        float | None, typer.Option(metavar="SHARE", help="Share of the cases that is predicted and not fitted.")
+        float | None, typer.Option(metavar="SHARE", help="Share of the cases to predict and not to fit.")
     ] = None,
-    starts: Annotated[int | None, typer.Option(metavar="N", help="Places from which the search begins.")] = None,
-    write: Annotated[Path | None, typer.Option(help="Write the scene with what was found here (TOML).")] = None,
+    starts: Annotated[int | None, typer.Option(metavar="N", help="Number of points to search from.")] = None,
+    write: Annotated[Path | None, typer.Option(help="Write the scene with the fitted numbers (TOML) here.")] = None,
 ) -> None:
-    """Find numbers of a scene from measurements, and what these leave open.
+    """Find numbers of a scene from measurements, and say which stay open.
 
     Exit codes: 0 found, 2 refused, 3 not found, not determined by the data, or found and no scene with --write.
     """

@@ -19,12 +19,12 @@ from cosserat_casadi.results.presentation import write_all
 
 def modes(
     scene: SceneFile,
-    count: Annotated[int, typer.Option(help="How many modes, those of lowest frequency.")] = DEFAULT_COUNT,
+    count: Annotated[int, typer.Option(help="Number of modes, from the lowest frequency on.")] = DEFAULT_COUNT,
     settings: Settings = None,
     output: Annotated[Path | None, typer.Option(help="Write the modes (JSON) here.")] = None,
     plot: Annotated[Path | None, typer.Option(help="Draw the modes here: .png, .pdf or .svg.")] = None,
-    animation: Annotated[Path | None, typer.Option(help="Draw one mode as it swings here: .gif or .mp4.")] = None,
-    mode: Annotated[int, typer.Option(metavar="NUMBER", help="Of the mode that --animation shows.")] = 1,
+    animation: Annotated[Path | None, typer.Option(help="Draw one swinging mode here: .gif or .mp4.")] = None,
+    mode: Annotated[int, typer.Option(metavar="NUMBER", help="Mode that --animation shows.")] = 1,
 ) -> None:
     """Find frequencies, damping and shapes of small vibrations about the equilibrium, and whether it is stable.
 

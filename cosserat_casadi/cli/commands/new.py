@@ -28,12 +28,12 @@ class Template(StrEnum):
 def new(
     scene: Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file (TOML) to write.", show_default=False)],
     template: Annotated[
-        Template, typer.Option(help="What to begin with: wire, tendon-robot or parallel-robot.")
+        Template, typer.Option(help="Template to begin with: wire, tendon-robot or parallel-robot.")
     ] = Template.WIRE,
 ) -> None:
     """Write a scene with comments, to begin with. Exit codes: 0 written, 2 refused."""
     if scene.exists():
-        raise SceneError(Problem("SCENE", f"{scene} is there already", "nothing is overwritten: name another file"))
+        raise SceneError(Problem("SCENE", f"{scene} exists already", "nothing is overwritten: name another file"))
     check_writable(scene, "SCENE")
     write_atomically(scene, (TEMPLATES / f"{template.value}.toml").read_bytes())
     console = Console()

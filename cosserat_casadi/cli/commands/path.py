@@ -64,18 +64,18 @@ def path(
         typer.Option(
             "--range",
             metavar="COLUMN=FROM:TO:COUNT",
-            help="Instead of --input: one number of an input from a value to another, at least COUNT points.",
+            help="One number of an input, from a value to another, in COUNT points or more; instead of --input.",
         ),
     ] = None,
-    branch: Annotated[bool, typer.Option("--branch", help="Leave along the branch of the first bifurcation.")] = False,
+    branch: Annotated[bool, typer.Option("--branch", help="Follow the branch of the first bifurcation.")] = False,
     bifurcation: Annotated[
-        int, typer.Option("--bifurcation", help="With --branch: leave at this one; below zero the branch's other half.")
+        int, typer.Option("--bifurcation", help="Bifurcation of --branch; below zero, the other half of its branch.")
     ] = 1,
     settings: Settings = None,
     output: Annotated[Path | None, typer.Option(help="Write the path (JSON) here.")] = None,
     plot: Annotated[Path | None, typer.Option(help="Draw load against displacement here: .png, .pdf or .svg.")] = None,
     table: Annotated[Path | None, typer.Option("--csv", help="Write the points (CSV) here.")] = None,
-    animation: Annotated[Path | None, typer.Option(help="Draw the shapes in motion here: .gif or .mp4.")] = None,
+    animation: Annotated[Path | None, typer.Option(help="Draw the moving shapes here: .gif or .mp4.")] = None,
 ) -> None:
     """Follow equilibria while an input moves, through folds. Exit codes: 0, 2 refused, 3 not at factor 1."""
     # Every check adds to the list, and the last one raises, so that all faults are reported at once.

@@ -42,7 +42,7 @@ def simulate(
     ] = None,
     speed: Annotated[
         float,
-        typer.Option(metavar="FACTOR", help="Of the animation: 1 is as fast as the motion, 0.1 ten times slower."),
+        typer.Option(metavar="FACTOR", help="Speed of the animation: 1 is that of the motion, 0.1 ten times slower."),
     ] = 1.0,
     start: Annotated[
         Path | None,
@@ -50,23 +50,23 @@ def simulate(
             "--from", metavar="RESULT", help="Start at rest from this result file of solve, or go on with this motion."
         ),
     ] = None,
-    step: Annotated[float | None, typer.Option(help="Fixed time step, s; by default the tolerance chooses it.")] = None,
+    step: Annotated[float | None, typer.Option(help="Fixed time step, s; by default the tolerance decides.")] = None,
     duration: Annotated[float | None, typer.Option(help="Time to simulate, s.")] = None,
-    frames: Annotated[int | None, typer.Option(help="Rows of the result, evenly spaced in time.")] = None,
+    frames: Annotated[int | None, typer.Option(help="Number of rows of the result, evenly in time.")] = None,
     tolerance: Annotated[
-        float | None, typer.Option(help="Error that the tip's path may have, over the rod's length.")
+        float | None, typer.Option(help="Most error of the tip's path, over the rod's length.")
     ] = None,
     compiled: Annotated[
         bool | None,
         typer.Option(
             "--compiled/--interpreted",
-            help="Compile the equations, for later motions too; by default where it pays.",
+            help="Compile the equations, for later motions too; by default if it saves time.",
             show_default=False,
         ),
     ] = None,
     part: Annotated[
         float | None,
-        typer.Option(metavar="SECONDS", help="Write parts of this length to OUTPUT-0001 and so on: for long motions."),
+        typer.Option(metavar="SECONDS", help="Write parts of this duration, s, to OUTPUT-0001 and so on."),
     ] = None,
     settings: Settings = None,
 ) -> None:
@@ -137,7 +137,7 @@ def _check_scene(
         refuse_tubes(scene)
         if scene.simulation is None:
             remedy = "add a table [simulation] with duration = 1.0 (s), or give --duration"
-            problems.append(Problem("simulation", "missing: it says for how long to simulate", remedy))
+            problems.append(Problem("simulation", "missing: it says how long to simulate", remedy))
         if start is not None:
             solution = read_start(start, scene)
     if problems or scene is None:

@@ -38,14 +38,14 @@ def solve(
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON, and nothing else.")] = False,
     stable: Annotated[
-        bool, typer.Option("--stable", help="Find a stable equilibrium: where the rod is unstable, let it settle.")
+        bool, typer.Option("--stable", help="Find a stable equilibrium: an unstable rod settles to one.")
     ] = False,
     every: Annotated[
-        bool, typer.Option("--all", help="Of concentric tubes: find all equilibria, each called stable or not.")
+        bool, typer.Option("--all", help="Concentric tubes: find all equilibria, and say which are stable.")
     ] = False,
     exact: Annotated[
         bool,
-        typer.Option("--exact-contact", help="Leave the widths of obstacles out: rods touch them exactly."),
+        typer.Option("--exact-contact", help="Ignore the widths of obstacles: rods touch them exactly."),
     ] = False,
 ) -> None:
     """Find the equilibrium of a scene.
@@ -59,14 +59,14 @@ def solve(
     with collect_problems(problems):
         read = read_scene(scene, tuple(settings or ()))
         if every and not read.tubes:
-            problems.append(Problem("--all", "is for concentric tubes", "leave it out"))
+            problems.append(Problem("--all", "needs a scene of concentric tubes", "leave it out"))
         if every and stable:
-            problem = "stands beside --all, which calls each equilibrium stable or not"
+            problem = "cannot go with --all, which says of each equilibrium whether it is stable"
             problems.append(Problem("--stable", problem, "leave one of them out"))
         if read.tubes and plot is not None and plot.suffix.lower() in MESHES:
             problems.append(Problem("--plot", "tubes have no file of meshes", "use .png, .pdf or .svg"))
         if exact and read.tubes:
-            problems.append(Problem("--exact-contact", "is for rods, which touch obstacles", "leave it out"))
+            problems.append(Problem("--exact-contact", "needs a scene of rods, which touch obstacles", "leave it out"))
         elif exact:
             read = with_exact_contact(read)
     refuse(problems)
@@ -82,7 +82,7 @@ def solve(
         return
     solution = solve_with_progress(read, stable=stable)
     _give(solution, output, plot, as_json=as_json)
-    # On standard error, so that standard output holds only JSON; None is no verdict.
+    # The warning goes to standard error, so that standard output holds only JSON; None is no verdict.
     if solution.converged and solution.stable is False and not stable:
         print_warnings(Console(stderr=True), [UNSTABLE])
     # If stability is undefined, --stable fails.

@@ -35,29 +35,29 @@ def sweep(
         Path, typer.Option(help="Write a row for each solve here: .csv, .parquet, or .dataset, a folder of parts.")
     ],
     over: Annotated[
-        Path | None, typer.Option(help="What to solve for: a grid (TOML), or a row for each solve (CSV).")
+        Path | None, typer.Option(help="Values to solve for: a grid (TOML), or a row for each solve (CSV).")
     ] = None,
     ranges: Annotated[
         list[str] | None,
         typer.Option(
             "--range",
             metavar="COLUMN=FROM:TO:COUNT",
-            help="Values of an input or a parameter to solve for; several make a grid, beside the rows of --over too.",
+            help="Values of an input or a parameter; several ranges make a grid, also with the rows of --over.",
         ),
     ] = None,
     scheduler: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Run on this dask.distributed cluster: tcp://host:8786.")
+        str | None, typer.Option(metavar="ADDRESS", help="Solve on this dask.distributed cluster: tcp://host:8786.")
     ] = None,
-    cores: Annotated[int | None, typer.Option(min=1, help="Cores of this machine to use; all by default.")] = None,
+    cores: Annotated[int | None, typer.Option(min=1, help="Number of cores to use; all by default.")] = None,
     device: Annotated[
         str | None,
-        typer.Option(metavar="cuda", help="Solve on a GPU: experimental, never run on one, of unmeasured speed."),
+        typer.Option(metavar="cuda", help="Solve on a GPU: experimental, it never ran on a GPU and was not timed."),
     ] = None,
     samples: Annotated[
-        int, typer.Option(min=1, max=10_000, help="Rows that the discretisation is chosen on.")
+        int, typer.Option(min=1, max=10_000, help="Number of rows to choose the discretisation on.")
     ] = SAMPLES,
     stability: Annotated[
-        bool, typer.Option("--stability", help="Say of every row whether its equilibrium is stable.")
+        bool, typer.Option("--stability", help="Say whether the equilibrium of each row is stable.")
     ] = False,
     estimate_errors: Annotated[
         bool,
@@ -67,18 +67,18 @@ def sweep(
     ] = True,
     sobol: Annotated[
         Path | None,
-        typer.Option(help="Draw the random columns for sensitivity indices, and write those here: .json."),
+        typer.Option(help="Draw the random columns for sensitivity indices, and write the indices here: .json."),
     ] = None,
     plot: Annotated[
         Path | None, typer.Option(help="Draw the workspace, or with --sobol the indices, here: .png, .pdf or .svg.")
     ] = None,
     colour: Annotated[
-        str | None, typer.Option(metavar="COLUMN", help="Colour the figure by this column, or by 'outcome'.")
+        str | None, typer.Option(metavar="COLUMN", help="Column that colours the figure, or 'outcome'.")
     ] = None,
     shard: Annotated[
-        str | None, typer.Option(metavar="K/N", help="Solve the K-th of N parts of the rows, for --merge.")
+        str | None, typer.Option(metavar="K/N", help="Solve the K-th of N parts of the rows; --merge joins them.")
     ] = None,
-    merge: Annotated[bool, typer.Option("--merge", help="Write the results from the shards beside --output.")] = False,
+    merge: Annotated[bool, typer.Option("--merge", help="Write --output from the shards beside it.")] = False,
     settings: Settings = None,
 ) -> None:
     """Solve a scene for every row of a grid or a table of inputs and parameters.
@@ -100,7 +100,7 @@ def sweep(
     with collect_problems(problems):
         table = _asked_table(over, ranges or [], output, sobol=sobol is not None)
     if swept_scene is None or table is None:
-        # Without scene and table only the output is left to check.
+        # Only the output can be checked without scene and table.
         problems.extend(output_problems(output, None))
     else:
         with collect_problems(problems):
@@ -158,9 +158,9 @@ def _check_shard(shard: str | None, merge: bool, plot: Path | None, problems: li
     if shard is None:
         return None
     if merge:
-        problems.append(Problem("--merge", "is for all shards together", "leave it out beside --shard"))
+        problems.append(Problem("--merge", "needs all shards together", "leave it out beside --shard"))
     if plot is not None:
-        problems.append(Problem("--plot", "is of all rows", "give it with --merge"))
+        problems.append(Problem("--plot", "shows all rows", "give it with --merge"))
     with collect_problems(problems):
         return Shard.read(shard)
     return None
@@ -176,7 +176,7 @@ def _asked_table(over: Path | None, ranges: list[str], output: Path, *, sobol: b
         remedy = "give a file, or ranges such as --range push.force.x=-1:1:21"
         raise SceneError(Problem("--over", "and --range are missing: there is nothing to solve for", remedy))
     if over is None and sobol:
-        raise SceneError(Problem("--sobol", "is of random columns, and --over is missing", "name a grid that has some"))
+        raise SceneError(Problem("--sobol", "needs random columns, and --over is missing", "name a grid that has some"))
     return asked_table(over, ranges, sobol=sobol, scratch=Scratch.beside(output))
 
 

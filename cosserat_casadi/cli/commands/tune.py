@@ -36,8 +36,8 @@ from cosserat_casadi.scene.writing import scene_text
 
 def tune(
     scene: SceneFile,
-    output: Annotated[Path, typer.Option(help="Write the scene with its discretisation fixed here (TOML).")],
-    tolerance: Annotated[float | None, typer.Option(help="Wanted error of the tip poses; else the scene's.")] = None,
+    output: Annotated[Path, typer.Option(help="Write the scene with its discretisation fixed (TOML) here.")],
+    tolerance: Annotated[float | None, typer.Option(help="Wanted error of tip poses; by default the scene's.")] = None,
     over: Annotated[Path | None, typer.Option(help="Load cases: a grid (TOML), or rows (CSV).")] = None,
     ranges: Ranges = None,
     samples: Annotated[
@@ -45,7 +45,7 @@ def tune(
         typer.Option(
             min=1,
             max=100_000,
-            help=f"Random corners, and points: {SAMPLES}, and {SAMPLES_IN_CONTACT} beside wires and in exact contact.",
+            help=f"Random corners, and random points: {SAMPLES}; in contact and beside wires {SAMPLES_IN_CONTACT}.",
             show_default=False,
         ),
     ] = None,

@@ -24,12 +24,12 @@ from cosserat_casadi.scene import read_scene
 
 def view(
     scene: SceneFile,
-    port: Annotated[int, typer.Option(min=0, max=65535, help="Of this machine; 0 for one that is free.")] = 0,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Port of this machine; 0 takes a free one.")] = 0,
     browser: Annotated[bool, typer.Option(help="Open a browser.")] = True,
     ranges: Ranges = None,
     settings: Settings = None,
 ) -> None:
-    """Move a scene in a browser: sliders, the tip under the hand, vibrations, the motion. Ctrl-C ends it.
+    """Move a scene in a browser, by sliders or by its tip; see vibrations and motions. Ctrl-C ends the command.
 
     Modes and nodes are chosen so that the tolerance is met wherever the sliders go. Their ends are taken from --range,
     the scene's [ranges] or [[bounds]], or the scale of the input. With --range, modes and nodes that the scene fixes

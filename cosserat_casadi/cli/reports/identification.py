@@ -85,7 +85,7 @@ def _residuals(found: Identification) -> str:
     if outliers:
         sentence += f"; {counted(outliers, 'outlier')}"
     if found.step is not None:
-        sentence += f"; steps of {found.step:.3g} s, which leave {found.step_error:.2g} σ"
+        sentence += f"; steps of {found.step:.3g} s, with an error of {found.step_error:.2g} σ"
     starts, ended_here = found.starts
     if starts > 1:
         sentence += f"; {ended_here} of {starts} starts ended here"

@@ -120,7 +120,7 @@ def notes_on_planes(model: Model) -> Iterator[str]:
         if placed.constraint.size < JOINT_KINDS[joint.kind].directions(joint).size:
             name = joint.name or placed.where
             yield (
-                f"{name} closes a loop in a plane and holds nothing across it; base_wrench has all loads "
+                f"{name} closes a loop in a plane and holds nothing across the plane: base_wrench has all loads "
                 "across the plane at the base of the rod, however its joints share them."
             )
 
@@ -173,8 +173,8 @@ def print_missed(console: Console, *, fixed: bool) -> None:
     """
     remedy = "narrow the ranges, or ask for a larger tolerance"
     if fixed:
-        remedy = "leave modes, nodes and rotation out of the scene, and they are chosen"
-    console.print(f"[bold red]What was written does not keep the tolerance all over the ranges:[/] {remedy}.")
+        remedy = "leave modes, nodes and rotation out of the scene, so that they are chosen"
+    console.print(f"[bold red]The written scene does not keep the tolerance everywhere in the ranges:[/] {remedy}.")
 
 
 def print_locking(console: Console, sentence: str) -> None:

@@ -75,7 +75,7 @@ def _stations(path: EquilibriumPath, abscissae: Mapping[str, float]) -> list[_St
 
 def _events_table(path: EquilibriumPath, stations: Sequence[_Station]) -> Table:
     """Table of start, events and end of a path, with the stability after each."""
-    table = table_of("point", "factor", escape(path.name), "beyond it", unbroken=("factor", "beyond it"))
+    table = table_of("point", "factor", escape(path.name), "after it", unbroken=("factor", "after it"))
     for station in stations:
         value = ", ".join(digits(np.ravel(path.value_at(station.factor), order="F")))
         cells = [station.kind, _factor(station), f"[{value}]", _stability(path, station.index)]

@@ -62,11 +62,11 @@ def print_stopped_sweep(console: Console, part: Path | None) -> None:
     if part is None or not part.exists():
         console.print("Stopped before any row was solved. Nothing was written.")
         return
-    console.print(f"Stopped. What is done is kept in {escape(str(part))}: the same command goes on.")
+    console.print(f"Stopped. {escape(str(part))} keeps the finished rows: the same command goes on from them.")
 
 
 def _print_finished(console: Console, output: Path) -> None:
-    console.print(f"{escape(str(output))} holds this sweep already: nothing was computed")
+    console.print(f"{escape(str(output))} already holds this sweep: nothing was computed")
 
 
 def print_shard(console: Console, shard: Shard, rows: int, output: Path, *, finished: bool) -> None:
@@ -98,7 +98,7 @@ def _choice_sentence(chosen: dict[str, Any], tolerance: float) -> str:
     """Sentence on the discretisation of rows, with the error of a chosen one."""
     discretisation = chosen["discretisation"]
     if discretisation is None:
-        return "Modes, nodes and rotation are as the scene fixes them; what it leaves open has its default."
+        return "The scene fixes modes, nodes or rotation. Those that it leaves open have their defaults."
     # Rows without an equilibrium do not count for the discretisation.
     count = len(chosen["rows"])
     sections = discretisation.get("sections")
@@ -107,7 +107,7 @@ def _choice_sentence(chosen: dict[str, Any], tolerance: float) -> str:
     sentence = escape(f"{words}, chosen on {counted(count, 'row')}")
     estimate = chosen["error_estimate"]
     if estimate is None:
-        return f"{sentence}, [bold red]none of which has an equilibrium.[/]"
+        return f"{sentence}, [bold red]but none has an equilibrium.[/]"
     if chosen["converged"] < count:
         sentence += f", {chosen['converged']} of which have an equilibrium"
     return f"{sentence}: estimated error {estimate:.1e}, {_within(estimate, tolerance)} {tolerance:g}."
@@ -125,7 +125,7 @@ def _error_sentences(sweep: Sweep) -> Iterator[str]:
     # Rows are numbered from 1 for users.
     error = f"Estimated error of {counted(known, 'converged row')} at most {largest:.1e} (row {1 + row})"
     if not sweep.tolerance_binds:
-        yield f"{error}; the scene fixes what they are computed with, and asks for no tolerance."
+        yield f"{error}; the scene fixes its discretisation, and asks for no tolerance."
     elif not missed:
         yield f"{error}, within {tolerance:g}."
     else:
@@ -213,11 +213,11 @@ def print_sobol(console: Console, indices: SobolIndices) -> None:
             table.add_row(shown, escape(factor), first, total)
     console.print(table)
     if constant:
-        console.print(f"Does not vary: {escape(', '.join(constant))}.", soft_wrap=True)
+        console.print(f"Constant: {escape(', '.join(constant))}.", soft_wrap=True)
     if indices.left_out:
         sentence = (
             f"[bold yellow]Left out: {counted(indices.left_out, 'draw')} of {indices.samples + indices.left_out}, "
-            "of which some row has no equilibrium.[/] The indices are those of the others."
+            "since a row of each has no equilibrium.[/] The other draws give the indices."
         )
         console.print(sentence, soft_wrap=True)
 

@@ -104,7 +104,7 @@ def print_tubes_check(console: Console, robot: Robot) -> None:
 
 
 def _path_table(path: TubePath) -> Table:
-    table = table_of("point", f"{escape(path.name)}, {path.unit}", "beyond it", "snaps to, m", "energy released, J")
+    table = table_of("point", f"{escape(path.name)}, {path.unit}", "after it", "snaps to, m", "energy released, J")
     last = len(path.solutions) - 1
     table.add_row("start", f"{path.values[0]:.10g}", _verdict(path.solutions[0]), "", "")
     for event in path.events:

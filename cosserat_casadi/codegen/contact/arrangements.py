@@ -108,12 +108,12 @@ class _Met:
         split = sorted({(touch.owner, touch.obstacle, X) for touch in touches for X in touch.seams})
         problems = []
         for rod, obstacle in from_base:
-            problem = f"it lies on {obstacle!r} from its base on: such a line of contact is not written in C"
+            problem = f"it lies on {obstacle!r} from its base on: C has no such line of contact"
             problems.append(Problem(f"rods.{rod}", problem, "give the obstacle a width, m, or move it off the base"))
         for rod, obstacle, X in split:
             problem = (
-                f"what acts at {X:g} of {rod!r} is inside the line along which it touches {obstacle!r}: not written in "
-                "C"
+                f"a load or joint at {X:g} of {rod!r} is inside the line along which it touches {obstacle!r}: C has no "
+                "such contact"
             )
             problems.append(Problem("loads", problem, "give each obstacle a width, m, for a contact that is smooth"))
         count = len(self.states)
@@ -209,5 +209,5 @@ def _z_of(equations: ContactEquations, near: Solution) -> FloatArray:
     settling = Settling(equations.scene, equations.given, equations.grids, NewtonSettings(), LEAST_TOLERANCE)
     z = settling.solved(equations, near)
     if z is None:
-        raise ExportError(Problem("obstacles", "the contacts of the scene's own inputs could not be found again"))
+        raise ExportError(Problem("obstacles", "the search found no contacts at the scene's own inputs"))
     return z

@@ -16,7 +16,7 @@ from cosserat_casadi.model.obstacle_checks import exact_rods, held_by_contact, s
 from cosserat_casadi.model.parameters import parameter_layout
 
 SENTENCES = {
-    "cuda": "rods in exact contact have no batches on a GPU",
+    "cuda": "a GPU cannot solve batches of rods in exact contact",
 }
 """Functions that a folder may hold of other scenes, and why not of these."""
 
@@ -50,7 +50,7 @@ def check_contact(scene: scenes.Scene, asked: Mapping[str, bool]) -> None:
         remedy = "export the scene twice: with --dynamics, and with this"
         for word, what in AT_REST.items():
             if asked.get(word):
-                problem = f"{what} in exact contact are in a folder of their own, without --dynamics"
+                problem = f"a folder with --dynamics has no {what} in exact contact"
                 problems.append(Problem(f"--{word}", problem, remedy))
         problems += refused_in_motion(scene)
     else:
@@ -66,7 +66,7 @@ def _refused_obstacles(scene: scenes.Scene) -> Iterator[Problem]:
     for obstacle in scene.obstacles:
         disks = [body for body in scene.bodies if obstacle.concerns_body(body.name) and body.thickness is not None]
         if obstacle.body is not None or disks:
-            problem = "exact contact with an obstacle on a body, or of a disk, is not found in C"
+            problem = "C finds no exact contact with an obstacle on a body, nor of a disk"
             yield Problem(f"obstacles.{obstacle.name}", problem, "give each obstacle a width, m")
 
 
@@ -77,7 +77,7 @@ def refused_in_motion(scene: scenes.Scene) -> Iterator[Problem]:
     yield from _refused_parameters(scene)
     for obstacle in scene.obstacles:
         if obstacle.is_smooth and np.isfinite(obstacle.thickness):
-            problem = "steps in C watch a thin smooth obstacle, or obstacles that are touched exactly, not both"
+            problem = "steps in C watch a thin smooth obstacle, or obstacles in exact contact, not both"
             yield Problem(f"obstacles.{obstacle.name}", problem, "give each obstacle a width, m, or none")
 
 
@@ -88,13 +88,15 @@ def _refused_parameters(scene: scenes.Scene) -> Iterator[Problem]:
         for own in numbers.all_numbers:
             remedy = "leave it out, or give each obstacle a width, m"
             if own.holder.table == "rods" and own.keys[0] in ("length", "section"):
-                problem = f"{own.name}: C has lengths and sections of rods in exact contact in numbers"
+                problem = (
+                    f"{own.name} cannot change: in exact contact C has lengths and sections of rods as fixed numbers"
+                )
                 yield Problem("parameters", problem, remedy)
             if own.holder.table == "bodies" and own.keys[0] == "radius" and own.holder.index in touching:
-                problem = f"{own.name} is the surface of what touches exactly, which C has in numbers"
+                problem = f"{own.name} cannot change: C has the surfaces of bodies in exact contact as fixed numbers"
                 yield Problem("parameters", problem, remedy)
     for ends in parameter_layout(scene).moving:
-        problem = f"{', '.join(ends.names)} would move ends of elements, which in C contacts alone do"
+        problem = f"{', '.join(ends.names)} would move ends of elements, which C moves for contacts only"
         yield Problem("parameters", problem, "leave it out, or give each obstacle a width, m")
 
 
@@ -111,11 +113,11 @@ def check_load_cases(scene: scenes.Scene, load_cases: FloatArray | None) -> None
     if load_cases is None:
         return
     if not scene.touches_exactly:
-        problem = "load cases say which contacts are exported; no rod of this scene touches an obstacle exactly"
+        problem = "load cases say which contacts to export, but no rod of this scene touches an obstacle exactly"
         raise ExportError(Problem("--over", problem, "leave them out"))
     inputs = input_layout(without_contacts(scene)).size
     sizes = sorted({inputs, inputs + parameter_layout(scene).size})
     if load_cases.ndim != 2 or load_cases.shape[1] not in sizes or not np.isfinite(load_cases).all():
         shapes = " or ".join(f"(k, {size})" for size in sizes)
-        problem = f"load cases are finite numbers of shape {shapes}, got shape {load_cases.shape}"
+        problem = f"load cases must be finite numbers of shape {shapes}, got shape {load_cases.shape}"
         raise ExportError(Problem("--over", problem))

@@ -88,7 +88,7 @@ class CompiledTubes(Compiled):
         info = TubeInfo()
         arguments = pointer(given), *p, pointer(x), memory, options, *wanted
         self._function("track")(*arguments, self._workspace(), ctypes.byref(info))
-        # After any other end x is that of the turn before, for its inputs.
+        # After any other end x is the solution of the last turn, at its inputs.
         solved = self.outcomes[info.status] is Outcome.CONVERGED
         return CompiledTurn(
             **judged_words(info, self.outcomes),

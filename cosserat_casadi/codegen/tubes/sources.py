@@ -65,9 +65,9 @@ OTHERS = ("solver_recover.c",)
 """Files of the solver that tubes do not need."""
 
 RANGES = (
-    "a translation from zero to the length of its tube, and by the bounds and ranges of\n"
-    "   the scene. The solver refuses a translation beyond its tube, and inputs at which no tube\n"
-    "   stands out of the plate, each of which is in its range; at bounds and ranges it does not look."
+    "a translation from zero to the length of its tube, and by the bounds and ranges of\n   the scene. The solver "
+    "refuses a translation beyond its tube, and inputs at which no tube\n   stands out of the plate, even if each of "
+    "them is in its range; it ignores bounds and ranges."
 )
 """Sentence on the ranges of inputs, and on the solver beyond them, for the header."""
 
@@ -87,7 +87,7 @@ def check_tubes(asked: Mapping[str, bool]) -> None:
     Raises:
         ExportError: options are refused; the error lists all of them.
     """
-    problem = "is for rods, and the scene has concentric tubes"
+    problem = "needs a scene of rods, and this scene has concentric tubes"
     lost = [option for option, wanted in asked.items() if wanted and option != "--batches"]
     refuse([Problem(option, problem, "leave it out") for option in lost], ExportError)
 

@@ -24,7 +24,7 @@ static contact_info no_result(void) {
   return none;
 }
 
-/* Whether a solve ended with a solution for its inputs, if of the discrete equations alone. */
+/* Whether a solve ended with a solution of the discrete equations for its inputs. */
 static int is_solved(contact_status status) { return status == CONTACT_CONVERGED || status == CONTACT_UNRESOLVED; }
 
 static int is_known(const contact_state *state) {
@@ -32,8 +32,8 @@ static int is_known(const contact_state *state) {
   return all_finite(state->z, ARRANGEMENT[state->arrangement].size) && all_finite(state->inputs, INPUTS);
 }
 
-/* The straight way of the inputs from those of solved[0] towards others, in parts. Leaves the end in solved[0] and its
-   share of the way in info. */
+/* Moves the inputs from those of solved[0] straight towards others, in parts. Leaves the last state in solved[0] and
+   its share of the way in info. */
 static void move_inputs(const real *from, const real *to, const contact_options *options, workspace *work,
                         contact_info *info) {
   real done = 0;
@@ -62,7 +62,7 @@ static void move_inputs(const real *from, const real *to, const contact_options 
     done = end;
     info->load_factor = done;
     if (done == 1) {
-      /* Nodes or modes too few for so bent a rod give equations whose solution is not one of the rod. */
+      /* With too few nodes or modes for a bend the solution of the equations is no solution of the rod. */
       info->status = index[0] <= 1 ? CONTACT_CONVERGED : CONTACT_UNRESOLVED;
       if (info->status == CONTACT_CONVERGED && index[1] <= VANISHED) info->status = CONTACT_PATH_VANISHED;
       if (info->status == CONTACT_CONVERGED && index[2] <= VANISHED) info->status = CONTACT_OUT_OF_PLANE;
@@ -71,11 +71,11 @@ static void move_inputs(const real *from, const real *to, const contact_options 
     }
     step *= 2;
   }
-  /* Short of the inputs nothing is a solution for them. */
+  /* A state before the end of the way is no solution for the inputs. */
   if (info->status == CONTACT_CONVERGED) info->status = CONTACT_LOST_TRACK;
 }
 
-/* From a known state; the state is left as it was unless the equations are solved for these inputs. */
+/* Solves from a known state, and changes the state only if the equations are solved for these inputs. */
 static contact_status follow(const real *inputs, contact_state *state, const contact_options *options, workspace *work,
                              contact_info *info) {
   work->solved[0].arrangement = state->arrangement;
@@ -136,8 +136,8 @@ contact_status contact_solve(const real *inputs, contact_state *state, workspace
   return status;
 }
 
-/* The rates of a contact's places and of its forces at sections, in an entry of d_contacts_d_inputs; what is at the tip
-   stays there. */
+/* Writes the rates of a contact's places and of its forces at sections into an entry of d_contacts_d_inputs; a place at
+   the tip stays there. */
 static void contact_rates(const arrangement *at, const real *z_rate, int number, real *rates) {
   const contact_entry *entry = at->touch + number;
   const real *forces = z_rate + at->unknowns + entry->first_force;
@@ -181,7 +181,7 @@ static contact_status derivatives(const real *inputs, const contact_state *state
   return CONTACT_CONVERGED;
 }
 
-/* The Jacobian of the turn before, for the arrangement that it is of. */
+/* The Jacobian of the turn before serves only in its own arrangement. */
 static void recall(const contact_memory *memory, workspace *work) {
   work->jacobian_of = -1;
   if (!memory || !memory->has_jacobian || memory->arrangement < 0 || memory->arrangement >= ARRANGEMENTS) return;
@@ -253,7 +253,7 @@ int contact_contacts(const contact_state *state, contact_contact *contacts, work
     named->rod = own.rod;
     named->obstacle = own.obstacle;
     named->is_line = own.is_line;
-    /* A body has one section alone, of which no abscissa is told. */
+    /* A body has one section, without an abscissa. */
     named->from = own.rod < RODS ? own.start : 0;
     named->to = own.rod < RODS ? own.end : 0;
     memcpy(named->force, work->contact_forces + 3 * k, sizeof named->force);

@@ -46,7 +46,7 @@ typedef struct {
   int rod;
   int obstacle;
   int is_line;
-  int ends;        /* 1 of a point, 2 of a line */
+  int ends;        /* 1 for a point, 2 for a line */
   int moving;      /* how many of its ends are sought: those that are not at the tip */
   int first_force; /* among the forces: of its ends, then along it */
   int along;       /* coefficients of the force along a line */
@@ -58,7 +58,7 @@ typedef struct {
   int elements;
   int first_strain;        /* in x */
   int first_node;          /* among the nodes of all rods */
-  const int *place_of_end; /* place of contact at which an element ends; -1 where it ends at the same abscissa for good */
+  const int *place_of_end; /* place of contact at which an element ends; -1 if its end is fixed */
   const real *nominal;     /* that abscissa; else where strains are counted in the element's own width */
 } rod_elements;
 
@@ -90,17 +90,17 @@ typedef struct {
   const rod_modes *modes; /* of every rod */
   kernel residual;
   kernel jacobian;
-  kernel rate;     /* of the residual, as z and the inputs change at some rates */
+  kernel rate;     /* rate of the residual for rates of z and the inputs */
   kernel nodes;    /* positions of the nodes, and of bodies that may touch; whether they resolve the rods */
   kernel tips;     /* position and quaternion of every tip and body */
-  kernel tip_rate; /* its rate, likewise */
+  kernel tip_rate; /* rates of the tips and bodies */
   kernel contacts; /* forces of the contacts in world axes, and at their ends */
 #if CONTACT_ESTIMATES_ERRORS
   kernel watched; /* positions over lengths, quaternions, and lengths of cables over those of their rods */
   const turned_elements *turned; /* beside the richer modes */
 #endif
 #if CONTACT_ACTUATORS
-  kernel actuators; /* efforts, and what they work on */
+  kernel actuators; /* efforts and their conjugates */
 #endif
 #if CONTACT_STABILITY
   kernel bends;      /* second derivative of the gap along the rod at every contact, over the length */
@@ -108,7 +108,7 @@ typedef struct {
 #endif
 } arrangement;
 
-/* What a rod is in every arrangement, or a body. */
+/* Properties of a rod or a body in every arrangement. */
 typedef struct {
   int rank; /* among the owners of contacts, in whose order an arrangement has them */
   int components;   /* admitted strains */

@@ -1,10 +1,11 @@
-/* The error of an answer: its distance to that of the same contacts on modes and intervals added, and what it enters.
+/* The error of an answer: its distance from the answer with the same contacts on more modes and intervals, and its
+   depth in obstacles.
 
    cosserat_casadi/equilibrium/contact/contact_answer_error.py does the same in Python. */
 
 enum { WATCHED = POSE_SIZE * CONTACT_WATCHED_POSES + CONTACT_WATCHED_CABLES };
 
-/* Forces of contacts on the richer modes: those at the ends stay, and those along lines have coefficients more. */
+/* Forces of contacts on the richer modes: forces at the ends stay, forces along lines get more coefficients. */
 static void widen_forces(const arrangement *from, const real *old, const arrangement *to, real *z) {
   for (int k = 0; k < from->touches; k++) {
     const contact_entry *own = from->touch + k;
@@ -14,7 +15,7 @@ static void widen_forces(const arrangement *from, const real *old, const arrange
   }
 }
 
-/* The angle between two orientations, rad: half of it has its sine at half of the chord of unit quaternions. */
+/* The angle between two orientations, rad, from the chord c of their unit quaternions: 4 asin(c / 2). */
 static real turn_between(const real *a, const real *b) {
   real minus = 0, plus = 0;
   for (int i = 0; i < 4; i++) {
@@ -42,16 +43,16 @@ static real watched_distance(const arrangement *at, const real *z, const arrange
   return largest;
 }
 
-/* Whether what is inside an obstacle is the place of one of its contacts alone: as deep as Newton's method leaves the gap
-   there, whatever the slope of the gap from the section before. */
+/* Whether only the place of a contact is inside the obstacle, as deep as Newton's method leaves the gap there; the
+   slope of the gap from the section before does not matter. */
 static int is_place_of(const penetration *inside, const touch *contact) {
   const real off = smaller(fabs(inside->start - contact->start), fabs(inside->end - contact->end));
   return inside->start == inside->end && off <= TOLERANCE;
 }
 
-/* How far poses, places and forces may be off because contacts hold up to a tolerance alone; the nodes stand in the
-   workspace. Depth and angle of what is inside an obstacle beside its lines, how far it reaches beyond points there, and
-   what pulls. */
+/* Error of poses, places and forces because contacts hold only to a tolerance; the nodes stand in the workspace. It
+   counts depth and angle of stretches inside obstacles beside lines of contact, their length beyond points of contact,
+   and forces that pull. */
 static real unmet(const arrangement *at, const real *z, workspace *work) {
   penetration found[MOST_FAULTS];
   const real largest = largest_force(at, z);
@@ -79,7 +80,7 @@ static real unmet(const arrangement *at, const real *z, workspace *work) {
   return off;
 }
 
-/* The largest difference of places and forces of contacts; forces count relative to the largest, or to EI/l2. */
+/* The largest difference of places and forces of contacts; forces count relative to the largest force, or to EI/l2. */
 static real contact_distance(const arrangement *at, const real *z, const arrangement *richer, const real *fine,
                              const real *inputs, workspace *work) {
   real forces[3 * TOUCH_ROOM];
@@ -117,8 +118,8 @@ static int is_blind(const arrangement *at, const real *z, const real *fine) {
   return blind;
 }
 
-/* Estimated error of an equilibrium; the whole length, 1, where the same contacts do not hold on the richer modes,
-   or these are blind to what loads roll up. */
+/* Estimated error of an equilibrium, over the length. It is 1 if the same contacts do not hold on the richer modes, or
+   if these do not see rods that loads roll up. */
 static real estimated_error(int number, const real *z, const real *inputs, workspace *work) {
   const arrangement *at = ARRANGEMENT + number;
   const arrangement *richer = at + ARRANGEMENTS;

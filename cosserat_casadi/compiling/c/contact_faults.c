@@ -1,5 +1,5 @@
-/* What is at fault in an arrangement of contacts: forces that pull, and stretches of rods that are inside an obstacle.
-   cosserat_casadi/equilibrium/contact/contact_search.py looks for the same. */
+/* Faults of an arrangement of contacts: forces that pull, and stretches of rods inside an obstacle.
+   cosserat_casadi/equilibrium/contact/contact_search.py looks for the same faults. */
 
 enum { MOST_FAULTS = 16 };
 
@@ -12,7 +12,7 @@ typedef struct {
   real deepest;
   real depth;
   real angle; /* largest one between the rod and the obstacle, rad */
-  int touch; /* number of the contact that it is at; -1 of none */
+  int touch; /* number of its contact; -1 without one */
 } penetration;
 
 /* A contact of an arrangement at the places in z. */
@@ -26,8 +26,8 @@ static touch touch_at(const arrangement *at, const real *z, int number) {
   return made;
 }
 
-/* The largest force at a section or along a line, or EI/l2: what forces are compared with. The coefficients of a line
-   are forces per length: of a short one they are larger than any force. */
+/* The scale of forces: the largest force at a section or along a line, or EI/l2. The coefficients of a line are forces
+   per length, which on a short line exceed any force. */
 static real largest_force(const arrangement *at, const real *z) {
   real largest = 1;
   for (int number = 0; number < at->touches; number++) {
@@ -45,8 +45,8 @@ static real largest_force(const arrangement *at, const real *z) {
   return largest;
 }
 
-/* The least force of a contact where it opens first, relative to the largest force: at a section, or along a line.
-   Where only `opening` ends count, the tip of a line is left out, which may carry nothing. */
+/* The least force of a contact, at a section or along a line, relative to the largest force: there it opens first. If
+   only `opening` ends count, the tip of a line is left out, since its force may be zero. */
 static real least_force(const arrangement *at, const real *z, int number, real largest, int opening) {
   const contact_entry *entry = at->touch + number;
   const real *forces = z + at->unknowns + entry->first_force;
@@ -62,7 +62,7 @@ static real least_force(const arrangement *at, const real *z, int number, real l
   return least / largest;
 }
 
-/* How much a contact would have to pull at most, relative to the largest force. */
+/* The largest pull of a contact, relative to the largest force. */
 static real pull_of(const arrangement *at, const real *z, int number, real largest) {
   return larger(-least_force(at, z, number, largest, 0), 0);
 }
@@ -74,8 +74,8 @@ static real gap_of_section(const arrangement *at, const real *z, const pair_entr
   return gap_at(pair, position, X, work);
 }
 
-/* Where between two abscissae the gap is least, by golden sections: J. Kiefer, Sequential minimax search for a maximum,
-   Proc. AMS 4 (1953). */
+/* Abscissa of the least gap between two abscissae, by golden sections: J. Kiefer, Sequential minimax search for a
+   maximum, Proc. AMS 4 (1953). */
 static real lowest_between(const arrangement *at, const real *z, const pair_entry *pair, real first, real last,
                            workspace *work) {
   const real share = 0.38196601125010515;
@@ -118,15 +118,15 @@ static real distance_from_end(const arrangement *at, const real *z, int rod, rea
   return before > 0 && behind > 0 ? smaller(before, behind) : 0;
 }
 
-/* Step along a rod to the next section that is looked at. A gap changes by no more than X does, but for what the rod
-   stretches and tapers; beside ends of elements, where a rod that lies on starts to enter, steps are shorter. */
+/* Step along a rod to the next section to look at. A gap changes by at most the change of X, apart from stretch and
+   taper of the rod. Steps are shorter beside ends of elements, where a lying rod starts to enter an obstacle. */
 static real step_along(const arrangement *at, const real *z, const pair_entry *pair, real X, real gap) {
   if (is_on_line(at, z, pair, X)) return LOOKED_ALONG;
   const real least = smaller(larger(distance_from_end(at, z, pair->rod, X), BESIDE_END), CLOSEST);
   return smaller(larger(gap / FASTEST, least), FARTHEST);
 }
 
-/* Adds a section to the stretches that are inside obstacles; joins it to the last one where the rod has not left. */
+/* Adds a section to the stretches inside obstacles; it joins the last stretch if the rod has not left the obstacle. */
 static int add_inside(penetration *found, int count, int joins, const pair_entry *pair, real X, real depth, real angle) {
   if (joins) {
     penetration *own = found + count - 1;
@@ -144,8 +144,8 @@ static int add_inside(penetration *found, int count, int joins, const pair_entry
   return count + 1;
 }
 
-/* Finds the stretches of one rod that are deeper inside one obstacle than is admitted, behind those found before. Returns
-   the number of all. */
+/* Appends the stretches of one rod that are deeper inside one obstacle than admitted. Returns the number of all
+   stretches. */
 static int find_inside(const arrangement *at, const real *z, const pair_entry *pair, real admitted, penetration *found,
                        int count, workspace *work) {
   real X = first_section(pair->rod), before = X, before_last = X;
@@ -176,7 +176,7 @@ static int find_inside(const arrangement *at, const real *z, const pair_entry *p
   }
 }
 
-/* Finds the stretches that are deeper inside obstacles than is admitted; the nodes stand in the workspace. Returns their
+/* Finds the stretches that are deeper inside obstacles than admitted; the nodes stand in the workspace. Returns their
    number. */
 static int find_penetrations(const arrangement *at, const real *z, real admitted, penetration *found, workspace *work) {
   int count = 0;
@@ -184,7 +184,8 @@ static int find_penetrations(const arrangement *at, const real *z, real admitted
   return count;
 }
 
-/* Tells each stretch inside an obstacle the contact that it is at, and joins those at one contact. Returns their number. */
+/* Assigns to each stretch inside an obstacle its contact, and joins the stretches at one contact. Returns their
+   number. */
 static int join_at_contacts(const arrangement *at, const real *z, penetration *found, int count) {
   int kept = 0;
   for (int i = 0; i < count; i++) {
@@ -210,7 +211,7 @@ static int join_at_contacts(const arrangement *at, const real *z, penetration *f
   return kept;
 }
 
-/* The least gap of a rod where no contact of it with this obstacle is near; the nodes stand in the workspace. */
+/* The least gap of a rod away from its contacts with this obstacle; the nodes stand in the workspace. */
 static real least_gap(const arrangement *at, const real *z, const pair_entry *pair, workspace *work) {
   real least = HUGE_VAL;
   for (real X = first_section(pair->rod);;) {

@@ -11,40 +11,39 @@
    (V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems, Springer 2008). Blows: J. J. Moreau,
    Unilateral contact and dry friction in finite freedom dynamics, Springer 1988. */
 
-/* Residual of the law, over the largest force, up to which it holds; and what is rounding, over the terms of its sum. */
+/* Residual of the law, over the largest force, up to which it holds; and rounding, over the terms of its sum. */
 static const real LAW_HOLDS = (real)1e-12;
 static const real LAW_ROUNDING = (real)1e-13;
 
-/* Share of what a section yields to a force by which sections that stick yield more in Newton's matrix, not in its residual:
-   how several share what holds a rod that does not stretch is not determined. */
+/* Share of a section's compliance that Newton's matrix, not its residual, adds for sticking sections: how several of
+   them share the force on a rod that does not stretch is not determined. */
 static const real YIELDING = (real)1e-9;
 
-/* Shares of the same by which drags yield as they leave those at hand, where Newton's method goes round in circles: then each
-   law has one solution, and those of one after the other go to one without. */
+/* Shares of a section's compliance by which drags yield as they leave given drags, for use if Newton's method goes
+   round in circles: each such law has one solution, and the sequence of solutions converges to one without them. */
 static const real RELUCTANCES[] = {(real)1e-6, (real)1e-4, (real)1e-2, 1};
 
-/* Cosine of the axis of the tangents to the normal from which on another one is taken. */
+/* Cosine between the axis of the tangents and the normal above which another axis is taken. */
 static const real UPRIGHT = (real)0.9;
 
-/* Way in a stretch, over the length, up to which what slides at its start counts as at rest. */
+/* Way in a stretch, over the length, up to which a section that slides at its start counts as at rest. */
 static const real STANDS = (real)1e-8;
 
-/* Where a stretch ends as something comes to rest or turns back: share of the time to that of a first guess, what is added
-   to a second one so that it is reached, and share of a part of a step that is not made shorter for it. */
+/* Size of a stretch that ends as a section comes to rest or turns back: share of the time of the first guess, addition
+   to the second guess so that it is reached, and share of a part of a step that is not shortened for it. */
 static const real MOST_OF_A_TURN = (real)0.9;
 static const real BEYOND_TURN = (real)1e-6;
 static const real LEAST_OF_A_TURN = (real)1e-4;
 
-/* How much the slope at an end of a rod may rise beyond zero, over what it rose to zero, in a stretch that ends where a
+/* Largest rise of the slope at an end of a rod above zero, over its rise to zero, in a stretch that ends where a
    section runs out onto that end. */
 static const real BEYOND_END = (real)1e-2;
 
 /* Share of a stretch from which on it ends where something lifts off. */
 static const real MOST_OF_A_LIFT_OFF = (real)0.999;
 
-/* The search for such an end: size of a stretch in which something turned, 0 before there is one; whether the size at hand
-   is such that it just does; share of the stretch after which something lifted off at the last look, 0 before there is one;
-   how often it was looked for. */
+/* Search for the end of a stretch: size of a stretch in which a section turned, 0 before; whether the present size is
+   one at which it just turns; share of the stretch at lift-off by the last look, 0 before; number of looks. */
 typedef struct {
   real turned_after;
   int is_aimed;
@@ -53,13 +52,13 @@ typedef struct {
 } turn_search;
 
 enum {
-  ROWS = 3,         /* of what touches: along the normal, and along both tangents */
+  ROWS = 3,         /* of a touching section: along the normal, and along both tangents */
   LAW_TURNS = 60,   /* iterations of the law */
-  RELUCTANT = 60,   /* laws with drags that leave those at hand reluctantly, one after the other */
+  RELUCTANT = 60,   /* laws with drags that leave given drags reluctantly, in sequence */
   HALVINGS = 8,     /* of a step of these */
-  TURNS = SETS,     /* tries of a stretch after which the end at which something comes to rest is asked for */
+  TURNS = SETS,     /* tries of a stretch after which it must end where a section comes to rest */
   LOOKS_FOR_A_TURN = 6,
-  NARROWINGS = 20   /* of the span in which the largest restitution of a blow is that gives no energy */
+  NARROWINGS = 20   /* bisections for the largest restitution of a blow that adds no energy */
 };
 
 static real inner_of_two(const real *a, const real *b) { return a[0] * b[0] + a[1] * b[1]; }
@@ -88,7 +87,7 @@ static void both_tangents(const real *normal, const real *axis, real tangents[2]
   }
 }
 
-/* An axis across the normal, as far as axes of the world are; that of before serves while it is. */
+/* The axis of the tangents: an axis of the world across the normal, or the last axis while it is across. */
 static void choose_axis(touch *own, const real *normal) {
   int best = 0;
   if (inner(own->axis, own->axis) > 0 && ABSOLUTE(inner(own->axis, normal)) < UPRIGHT) return;
@@ -109,14 +108,14 @@ static rubbed section_of(const touch *own, const section_gap *gap, const real *x
   return at;
 }
 
-/* How a section that touches slides at a state, whose velocities are behind the positions as in an instant. */
+/* Slide of a touching section at a state; velocities stand behind the positions as in an instant. */
 static void slide_at(const touch *own, const section_gap *gap, const real *x, const real *inputs, real *slide,
                      real rows[2][N], real *along, workspace *work) {
   const rubbed at = section_of(own, gap, x, inputs, work);
   rubbing_of(FACING + own->facing, &at, slide, rows[0], along, work);
 }
 
-/* The same of a section by its number, at the start of a stretch or for a blow. */
+/* Slide of a section by its number, at the start of a stretch or for a blow. */
 static void note_slide(int k, const section_gap *gap, const real *x, const real *inputs, workspace *work) {
   touch *own = work->touches + k;
   memset(work->slide_rows[k], 0, sizeof work->slide_rows[k]);
@@ -126,7 +125,7 @@ static void note_slide(int k, const section_gap *gap, const real *x, const real 
   slide_at(own, gap, x, inputs, work->slides[k], work->slide_rows[k], work->along[k], work);
 }
 
-/* What a drag is multiplied by to be a force; its direction tells whether the rod slides along or back. */
+/* Coefficients that turn a drag into a force; the direction of the drag tells whether the rod slides along or back. */
 static void coefficients_of(const touch *own, const real *along, const real *drag, real matrix[2][2]) {
   const real *given = FACING[own->facing].coefficients;
   const real more = (inner_of_two(along, drag) > 0 ? given[1] : given[0]) - given[2];
@@ -141,7 +140,7 @@ static void friction_of(const touch *own, const real *along, const real *drag, r
   for (int a = 0; a < 2; a++) force[a] = inner_of_two(matrix[a], drag);
 }
 
-/* ---- The law of several at once ---- */
+/* ---- The law of several contacts ---- */
 
 /* The forces, along normals and tangents, of normal forces and drags. */
 static void pushes_of(int count, const int *members, const real *forces, real *pushes, const workspace *work) {
@@ -153,7 +152,7 @@ static void pushes_of(int count, const int *members, const real *forces, real *p
   }
 }
 
-/* The drag, less the multiple of the slide that Newton's method weighs it against, of one of those that press; its length. */
+/* Drag minus r times slide of a pressing section, for the projection of Newton's method. Returns its length. */
 static real tried_drag(int q, const workspace *work, real tried[2]) {
   for (int a = 0; a < 2; a++) {
     tried[a] = work->law_forces[ROWS * q + 1 + a] - work->law_scales[q] * work->law_slides[q][a];
@@ -161,8 +160,8 @@ static real tried_drag(int q, const workspace *work, real tried[2]) {
   return SQUARE_ROOT(inner_of_two(tried, tried));
 }
 
-/* What gaps and the law miss by with the forces at hand, as forces; tells by how much the largest is more than rounding, and
-   returns the length of all. Drags leave those in law_held reluctantly. */
+/* Residuals of gaps and the law at the present forces, as forces. Gives the largest one beyond rounding, and returns
+   the norm. Drags leave law_held reluctantly. */
 static real misses_of_law(int count, const int *members, real reluctance, real *excess, workspace *work) {
   const int order = ROWS * count;
   const real *answers = work->law_answers;
@@ -184,7 +183,7 @@ static real misses_of_law(int count, const int *members, real reluctance, real *
     if (i % ROWS > 0 && reluctance > 0) value += reluctance / weight * (forces[i] - work->law_held[i]);
     misses[i] = weight * value;
     work->law_terms[i] = LAW_ROUNDING * ABSOLUTE(weight) * terms;
-    /* How far it slides in a stretch is no more than the rounding of positions. */
+    /* Its slide in a stretch is within the rounding of positions. */
     if (i % ROWS > 0) work->law_terms[i] = larger(work->law_terms[i], weight * STAGE_ROUNDING / work->stretch_size);
     if (i % ROWS > 0) work->law_slides[q][i % ROWS - 1] = value;
   }
@@ -204,7 +203,7 @@ static real misses_of_law(int count, const int *members, real reluctance, real *
   return SQUARE_ROOT(sum);
 }
 
-/* Newton's matrix of what the law misses by. */
+/* Newton's matrix of the residuals of the law. */
 static void matrix_of_law(int count, const int *members, real reluctance, real *matrix, workspace *work) {
   const int order = ROWS * count;
   const real *answers = work->law_answers;
@@ -247,8 +246,8 @@ static void matrix_of_law(int count, const int *members, real reluctance, real *
   }
 }
 
-/* Newton's method for the law, from the forces at hand. Its steps are halved while what is missed does not become less: its
-   kinks may send it round in circles. Zero where it finds none. */
+/* Newton's method for the law, from the present forces. It halves steps until the residual falls, since kinks may send
+   it round in circles. Returns zero without a solution. */
 static int iterate_law(int count, const int *members, real reluctance, workspace *work) {
   const int order = ROWS * count;
   real *steps = work->law_values;
@@ -274,7 +273,7 @@ static int iterate_law(int count, const int *members, real reluctance, workspace
   return 0;
 }
 
-/* The same with drags that leave those of the solution before reluctantly, over and over, until the law without holds (R. T.
+/* Solves laws with drags that leave the last solution reluctantly, in sequence, until the plain law holds (R. T.
    Rockafellar, SIAM Journal on Control and Optimization 14, 1976). */
 static int iterate_reluctantly(int count, const int *members, real reluctance, workspace *work) {
   const size_t size = (size_t)(ROWS * count) * sizeof *work->law_forces;
@@ -288,8 +287,9 @@ static int iterate_reluctantly(int count, const int *members, real reluctance, w
   return 0;
 }
 
-/* Normal forces that close what is open, and drags that obey the law, of so many that press: open and law_answers tell gaps,
-   or their rates, and slides without forces and by forces, law_forces is the first guess. Zero where they are not found. */
+/* Finds the normal forces that close the gaps of so many pressing sections, and drags that obey the law. open holds
+   gaps, or their rates, and slides without forces; law_answers their changes by forces; law_forces is the first guess.
+   Returns zero without a solution. */
 static int settle_law(int count, const int *members, workspace *work) {
   const int order = ROWS * count;
   const size_t size = (size_t)order * sizeof *work->law_forces;
@@ -314,7 +314,7 @@ static int settle_law(int count, const int *members, workspace *work) {
 
 /* ---- In stages ---- */
 
-/* Takes the friction of a section that presses from the equations of a stage, and notes how it slides. */
+/* Subtracts the friction of a pressing section from the equations of a stage, and stores its slide. */
 static void rub_in_stage(int stage, int k, const section_gap *gap, const instant *at, real *residual, workspace *work) {
   const touch *own = work->touches + k;
   real(*rows)[N] = work->stage_slide_rows[stage][k];
@@ -335,8 +335,8 @@ static real *response_of(int k, int row, workspace *work) {
   return row == 0 ? work->responses[k] : work->slide_responses[k][row - 1];
 }
 
-/* What unit forces along normals and tangents do to positions by the factorised matrix of the step, and how gaps and the
-   positions of what slides answer. */
+/* Changes of positions by unit forces along normals and tangents, by the factorised matrix of the step, and the changes
+   of gaps and slides. */
 static void answer_slides(const stage_factors *factors, workspace *work) {
   const int count = work->touch_count;
   const int order = ROWS * count;
@@ -354,7 +354,7 @@ static void answer_slides(const stage_factors *factors, workspace *work) {
   }
 }
 
-/* The change at a stage of a gap or a slide by a complex one along the eigenvector; a slide is a velocity. */
+/* Change of a gap or a slide at a stage by a complex change along the eigenvector; a slide is a velocity. */
 static real at_stage(int stage, int row, real whole, real imaginary, real size) {
   const real rate = row > 0 ? RATE[0] / size : 1;
   const real rate_imaginary = row > 0 ? RATE[1] / size : 0;
@@ -363,7 +363,7 @@ static real at_stage(int stage, int row, real whole, real imaginary, real size) 
   return FROM_EIGENVECTOR[stage][0] * product - FROM_EIGENVECTOR[stage][1] * product_imaginary;
 }
 
-/* How gaps and slides of what presses answer at both stages to forces at both. */
+/* Changes of gaps and slides of pressing sections at both stages by forces at both stages. */
 static void answers_of_stages(workspace *work) {
   const int pressing = work->pressing;
   const int all = ROWS * work->touch_count;
@@ -382,8 +382,8 @@ static void answers_of_stages(workspace *work) {
   }
 }
 
-/* Corrections along the eigenvector with which what presses obeys the law at both stages, from those without a change of
-   forces; moves the forces. */
+/* Corrects the corrections along the eigenvector so that pressing sections obey the law at both stages; updates the
+   forces. */
 static void settle_stages(real *solution, workspace *work) {
   const int pressing = work->pressing;
   const int count = STAGES * pressing;
@@ -438,7 +438,7 @@ static void settle_stages(real *solution, workspace *work) {
   }
 }
 
-/* What a section that touches rubs with, the mean of a stretch as its force; the next one begins its guess with its end. */
+/* Stores the friction of a touching section: the mean over a stretch, and its end as the guess of the next stretch. */
 static void note_friction(int k, const section_gap *gap, workspace *work) {
   touch *own = work->touches + k;
   real tangents[2][3], force[2];
@@ -459,7 +459,7 @@ static void note_friction(int k, const section_gap *gap, workspace *work) {
 
 /* ---- Turns ---- */
 
-/* Notes how what touches slides at the start of a stretch, after its blows. */
+/* Stores the slides of touching sections at the start of a stretch, after its blows. */
 static void note_starts(const real *x, const real *v, const real *inputs, const real *rates, workspace *work) {
   instant *at = &work->at;
   memcpy(at->state, x, N * sizeof *x);
@@ -475,8 +475,8 @@ static void note_starts(const real *x, const real *v, const real *inputs, const 
   }
 }
 
-/* Shares of the speed at the start with which a section slides on in its direction at the stages, zero where it sticks. Zero
-   where it does not press, or does not slide at the start. */
+/* Speeds of a section at the stages along its direction at the start, over its speed there; zero where it sticks.
+   Returns zero if it does not press, or does not slide at the start. */
 static int goes_on(int k, real size, real shares[STAGES], const workspace *work) {
   const touch *own = work->touches + k;
   const real *start = work->start_slides[k];
@@ -488,22 +488,22 @@ static int goes_on(int k, real size, real shares[STAGES], const workspace *work)
   return 1;
 }
 
-/* The share of a stretch, above one, after which the speed of the polynomial with these shares at the stages is zero; as much
-   as most where it is not by then. */
+/* The share of a stretch, above one, after which the polynomial through these speeds at the stages is zero; at most
+   most. */
 static real stops_after(const real shares[STAGES], real most) {
   /* Quotients of differences over 0, 1/3 and 1. */
   const real first = (shares[0] - 1) / STAGE_NODES[0];
   const real second = ((shares[1] - shares[0]) / (1 - STAGE_NODES[0]) - first);
   const real slope = first - second * STAGE_NODES[0];
   const real root = slope * slope - 4 * second;
-  /* Of both roots the first above zero. */
+  /* The first root above zero. */
   const real stops = root >= 0 && slope < SQUARE_ROOT(root) ? 2 / (SQUARE_ROOT(root) - slope) : most;
   return stops > 1 ? (stops < most ? stops : most) : 1;
 }
 
-/* By how much the size of a stretch that was solved is to change so that it ends where a section comes to rest or turns
-   back, which is where the law changes: 1 where nothing does, or where it ends there. First it is made shorter until all
-   slides on, then it is as long as that motion lasts, and no longer than the rest of the step. */
+/* Factor on the size of a solved stretch so that it ends where a section comes to rest or turns back, since the law
+   changes there: 1 if no section does, or if the stretch ends there already. The search shortens the stretch until all
+   sections slide on, then extends it to the end of their slide, at most to the end of the step. */
 static real size_to_the_turn(const step_start *start, real whole, real rest, turn_search *search, workspace *work) {
   int turned = 0;
   real shorter = MOST_OF_A_TURN, stops = search->turned_after / start->size;
@@ -529,10 +529,10 @@ static real size_to_the_turn(const step_start *start, real whole, real rest, tur
   return shorter;
 }
 
-/* The share of a stretch that was solved after which a force comes to zero: where it pulls at the end, though it presses in
-   the mean. Sections at which a rod lies share its weight as rounding has it. A force that takes a rate of the gap at the
-   start, which the stretch before has left, pulls at the end too, and the more the shorter the stretch is: where this share
-   falls from look to look nothing lifts off. */
+/* The share of a solved stretch after which a force comes to zero: it pulls at the end, but presses in the mean.
+   Sections of a lying rod are left out, since rounding decides how they share its weight. A force that removes a rate
+   of the gap left by the last stretch pulls at the end too, the more the shorter the stretch is: if this share falls
+   from look to look, nothing lifts off. */
 static real share_to_lift_off(turn_search *search, const workspace *work) {
   real share = 1;
   for (int k = 0; k < work->touch_count; k++) {
@@ -548,7 +548,7 @@ static real share_to_lift_off(turn_search *search, const workspace *work) {
 }
 
 #ifdef RODS_FACE_RODS
-/* A touch as it is, or as the other rod has it: its place there stands for the own one. */
+/* A touch, or the touch as the other rod sees it, with the place on that rod. */
 static touch touch_of_side(const touch *own, int of_other) {
   touch side = *own;
   if (!of_other) return side;
@@ -560,7 +560,7 @@ static touch touch_of_side(const touch *own, int of_other) {
 }
 
 #endif
-/* Slope of a gap at an end of a rod after a share of a stretch that was solved, inwards: negative while it is less inside. */
+/* Inward slope of a gap at an end of a rod after a share of a solved stretch: negative if the gap is smaller inside. */
 static real slope_at_end(const step_start *start, real share, const touch *own, const real *unknowns, workspace *work) {
   const facing *faces = FACING + own->facing;
   section_gap gap;
@@ -578,8 +578,8 @@ static real slope_at_end(const step_start *start, real share, const touch *own, 
   return own->end_place > 0 ? -gap.slope : gap.slope;
 }
 
-/* The share of a stretch that was solved after which a section that slides runs out onto an end of the rod. It has no speed
-   there, and a stretch that goes beyond takes what it has at its own place from the energy. */
+/* The share of a solved stretch after which a sliding section runs out onto an end of the rod. It has no speed there,
+   and a stretch beyond would take the energy of its slide. */
 static real share_to_the_end(const step_start *start, const real *unknowns, workspace *work) {
   real share = 1;
 #ifdef RODS_FACE_RODS
@@ -608,8 +608,8 @@ static real share_to_the_end(const step_start *start, const real *unknowns, work
   return share;
 }
 
-/* By how much the size of a stretch is to change so that it ends where something runs out onto an end, lifts off, comes to
-   rest or turns back, looked for so many times. A stretch that is not to change is taken. */
+/* Factor on the size of a stretch so that it ends where a section runs out onto an end, lifts off, comes to rest or
+   turns back, after so many looks. A stretch with the factor one is accepted. */
 static real to_the_turn(const step_start *start, real whole, real rest, const real *unknowns, turn_search *search,
                         workspace *work) {
   real share = 1;
@@ -632,7 +632,7 @@ static real to_the_turn(const step_start *start, real whole, real rest, const re
 
 /* ---- In blows ---- */
 
-/* Impulses of a blow: which of those that touch are struck is tried, from those without friction. */
+/* Impulses of a blow: tries which touching sections are struck, first those without friction. */
 static int settle_blow(const real *wanted, real still, workspace *work) {
   const int count = work->touch_count;
   const int all = ROWS * count;
@@ -680,7 +680,7 @@ static int settle_blow(const real *wanted, real still, workspace *work) {
   return 0;
 }
 
-/* Energy that the impulses of a blow give, their work on the mean velocity, J; 0 where it is rounding. */
+/* Energy that the impulses of a blow add, their work on the mean velocity, J; 0 at rounding. */
 static real energy_given(const workspace *work) {
   const int all = ROWS * work->touch_count;
   real sum = 0, terms = 0;
@@ -696,7 +696,7 @@ static real energy_given(const workspace *work) {
   return ABSOLUTE(sum) > LAW_HOLDS * terms ? sum : 0;
 }
 
-/* Impulses of a blow that gives a share of what its restitution asks for. */
+/* Impulses of a blow with a share of its restitution. */
 static int give_back(real share, real still, workspace *work) {
   for (int k = 0; k < work->touch_count; k++) {
     work->wanted[k] = share * wanted_of(k, still, work) + (1 - share) * work->rates[k];
@@ -704,7 +704,8 @@ static int give_back(real share, real still, workspace *work) {
   return settle_blow(work->wanted, still, work);
 }
 
-/* Impulses of a blow with the largest share of its restitution that gives no energy, which friction may make less than all. */
+/* Impulses of a blow with the largest share of its restitution that adds no energy; friction may make it less than
+   one. */
 static int give_most(real still, workspace *work) {
   real least = 0, most = 1;
   if (!give_back(most, still, work)) return 0;
@@ -721,7 +722,8 @@ static int give_most(real still, workspace *work) {
   return give_back(least, still, work);
 }
 
-/* A blow with friction: Newton's law of impact along normals, Coulomb's along tangents, of velocities after it. */
+/* A blow with friction: Newton's law of impact along normals and Coulomb's law along tangents, for velocities after
+   it. */
 static int strike_with_friction(instant *at, real still, const stage_factors *factors, workspace *work) {
   const int count = work->touch_count;
   const int all = ROWS * count;

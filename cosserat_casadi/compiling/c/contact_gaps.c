@@ -1,5 +1,5 @@
-/* Gaps between rods or bodies and obstacles that they touch exactly, along the rods, and where they are least. Positions
-   between nodes are those of the polynomials through the nodes of an element.
+/* Gaps between rods or bodies and obstacles that they touch exactly, along the rods, and the places of least gaps.
+   Positions between nodes come from the polynomials through the nodes of an element.
 
    Exported steps and simulated motions both include it, and say what a surface is, surface_at and distance_at, where
    polynomials and gaps are written to, fitted_of and gaps_of, and how many numbers of a section a change moves, MOVED. Gaps
@@ -17,14 +17,14 @@ static const real SMOOTH = (real)1e-6;
 /* Distance along the rod up to which two sections that touch count as one. */
 static const real SAME_PLACE = (real)0.02;
 
-/* Gaps are rounded to so much where hills are told from valleys: a flat gap has none. */
+/* Unit to which gaps are rounded before valleys are sought, so that a flat gap has none. */
 static const real LEVEL = (real)1e-10;
 
-/* Change of a place from which on Newton's method squares it to rounding. */
+/* Change of a place below which the next step of Newton's method is at rounding. */
 static const real PLACED = (real)1e-8;
 
-/* How much lower a gap may be between two sections that are looked at than it falls from one to the next: that of a bend of
-   one, halfway. */
+/* Largest fall of a gap between two sections beyond the change from one to the next: the fall halfway with a bend of
+   one. */
 static const real BETWEEN = (real)0.125 / (LOOKS * LOOKS);
 
 /* Way down a gap without a bend. */
@@ -32,7 +32,7 @@ static const real DOWN = (real)5e-3;
 
 enum { PLACINGS = 50 };
 
-/* A gap at a section, with its derivatives along the rod, and what its derivatives by the unknowns are made of. */
+/* A gap at a section, with its derivatives along the rod and the parts of its derivatives by the unknowns. */
 typedef struct {
   real place; /* abscissa */
   real value;
@@ -63,7 +63,7 @@ static real clipped(real value, real least, real most) { return value < least ? 
 
 static real inner(const real *a, const real *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/* The surface at a point, and what it is along a curve through it: the gap with two derivatives. */
+/* Evaluates the surface at a point, and the gap with two derivatives along a curve through the point. */
 static void along_surface(const facing *own, const real *point, const real *second, section_gap *gap, workspace *work) {
   const real taper = own->radius_at_tip - own->radius_at_base;
   real distance;
@@ -100,7 +100,8 @@ static int element_of(const facing *own, real place) {
   return e;
 }
 
-/* Coefficients of the polynomials through the nodes, which sections are looked at by from now on; of a body its origin. */
+/* Writes the coefficients of the polynomials through the nodes, which give all gaps from now on; for a body, its
+   origin. */
 static void fit_nodes(const facing *own, const real *nodes, workspace *work) {
   real *coefficients = fitted_of(own, work);
 #ifdef RODS_FACE_RODS
@@ -181,7 +182,7 @@ static void add_section(const section_gap *gap, real times, real length, const r
   }
 }
 
-/* Weights of the points of a rod or body of which the sum changes as a gap does, added so many times. */
+/* Adds a multiple of the weights of the points of a rod or body whose weighted sum changes like a gap. */
 static void add_weights(const facing *own, const section_gap *gap, real times, real *weights) {
   add_section(gap, times, own->length, gap->normal, weights);
 #ifdef RODS_FACE_RODS
@@ -189,8 +190,8 @@ static void add_weights(const facing *own, const section_gap *gap, real times, r
 #endif
 }
 
-/* Adds weights of the points of which the sum changes as a section does along an axis, or, behind the three axes, as its
-   tangent along the normal; then as the tangent of another rod. */
+/* Adds weights of the points whose weighted sum changes like a section along an axis (rows 0 to 2), like its tangent
+   along the normal (row 3), or like the tangent of another rod (row 4). */
 static void row_weights(const facing *own, const section_gap *gap, int row, real *weights) {
   const int is_slope = row > 2;
   const real axis[3] = {(real)(row == 0), (real)(row == 1), (real)(row == 2)};
@@ -228,9 +229,9 @@ static real turning(const facing *own, const section_gap *gap, int slides, const
   return sum / own->length;
 }
 
-/* The section next to another where the gap is least: between the ends of the rod its slope is zero there. Newton's method
-   for the slope, which is continuous where its own slope, the bend, jumps from element to element; halving between sections
-   of slopes that differ in sign, as beside a wire that is thin beside the distance to it. */
+/* Finds the section of the least gap next to another section: its slope is zero there, unless it is an end of the rod.
+   Newton's method solves for the slope, which is continuous though the bend jumps between elements. Bisection between
+   slopes of different sign helps where Newton fails, as beside a thin and distant wire. */
 static void look_lowest(const facing *own, real near, section_gap *gap, workspace *work) {
   real falls = -1, rises = 2; /* sections where the gap falls, and where it rises */
   real place = near;
@@ -254,7 +255,7 @@ static void look_lowest(const facing *own, real near, section_gap *gap, workspac
   }
 }
 
-/* Gaps at the sections that are looked at first, rounded; returns their number. */
+/* Writes the rounded gaps at the sections that are looked at first; returns their number. */
 static int gaps_along(const facing *own, const real *nodes, real *gaps, workspace *work) {
   const real taper = own->radius_at_tip - own->radius_at_base;
   const int count = own->elements * LOOKS + 1;
@@ -289,14 +290,15 @@ static void look_lowest_by(const facing *own, int look, section_gap *lowest, wor
   if (!(ABSOLUTE(lowest->place - place) <= SAME_PLACE) || !(lowest->bend > 0)) look_at(own, place, lowest, work);
 }
 
-/* Looks along a rod, or at a body, whose valleys are asked for from now on. */
+/* Computes the gaps along a rod, or of a body, for the searches of valleys that follow. */
 static void look_along(const facing *own, const real *nodes, workspace *work) {
   fit_nodes(own, nodes, work);
   if (!own->is_body) gaps_along(own, nodes, gaps_of(own, work), work);
 }
 
-/* How much lower the gap may be next to a section that is looked at first, one of the least about it: by its bend, which two
-   steps from section to section tell. Beside an end one of them is not enough: halfway down to the next section it is zero. */
+/* Bound on how much lower the gap is next to a section of least gap among those looked at first, from the bend, which
+   the differences to both neighbours give. An end has one neighbour only: there the bound is half of that
+   difference. */
 static real step_down(const real *gaps, int last, int look) {
   const int first = look == 0 ? 0 : look == last ? last - 2 : look - 1;
   real deepest = BETWEEN;
@@ -307,9 +309,9 @@ static real step_down(const real *gaps, int last, int look) {
   return deepest;
 }
 
-/* The next section, from one of those that are looked at first on, whose gap is the least about it and not above a bound.
-   Returns the section to go on from, zero where there is no more. Ends that are not watched are none, but where all are asked
-   for. A section that is looked at has one valley at most. */
+/* Finds the next section with a least gap below a bound, from a given one of those looked at first on. Returns the
+   section to go on from, or zero at the end. Ends that are not watched count only if all are asked for. Each section
+   looked at has one valley at most. */
 static int next_valley(const facing *own, int look, real below, int all, section_gap *found, workspace *work) {
   const real *gaps = gaps_of(own, work);
   const int last = own->elements * LOOKS;

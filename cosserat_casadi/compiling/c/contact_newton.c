@@ -1,11 +1,11 @@
-/* Newton's method for the equations of one arrangement of contacts, of which each has a size of its own. */
+/* Newton's method for the equations of one arrangement of contacts; each arrangement has its own size. */
 
 typedef struct {
   contact_status status;
   real residual_norm; /* relative: over one plus the norm of z */
 } newton_result;
 
-/* Abscissa at which an element of a rod begins, or the one before it ends. */
+/* Abscissa of the begin of an element, or of the end of the last one. */
 static real end_of_element(const arrangement *at, const real *z, int rod, int number) {
   const rod_elements *elements = at->rods + rod;
   const int place = elements->place_of_end[number];
@@ -48,9 +48,9 @@ static int linearise(const arrangement *at, const real *z, const real *inputs, w
   return 1;
 }
 
-/* Minus the inverse of the Jacobian at hand times a residual. After steps with one Jacobian it is corrected by C. G.
-   Broyden's updates, applied from the steps alone: C. T. Kelley, Iterative Methods for Linear and Nonlinear Equations,
-   SIAM 1995, section 7.3. */
+/* Minus the inverse of the present Jacobian times a residual. After steps with one Jacobian the result is corrected by
+   C. G. Broyden's updates, applied from the steps alone: C. T. Kelley, Iterative Methods for Linear and Nonlinear
+   Equations, SIAM 1995, section 7.3. */
 static void quasi_newton_step(const arrangement *at, const real *residual, real *step, workspace *work) {
   const int n = at->size;
   for (int i = 0; i < n; i++) step[i] = -residual[i];
@@ -76,10 +76,10 @@ static real change_length(const arrangement *at, const real *z, const real *chan
   return sqrt(sum + dot(change + behind, change + behind, at->places));
 }
 
-/* Halves the step until the one that would follow it, with the same Jacobian, is shorter. That test does not depend on how
-   equations are scaled, and those of a short line of contact are small beside the others: P. Deuflhard, Newton Methods for
-   Nonlinear Problems, Springer 2004, section 3.3. Returns the length that served, or zero; moves z, residual and norm on,
-   and tells how much shorter the step to come is. */
+/* Halves the step until the next step with the same Jacobian would be shorter. This test does not depend on the scale
+   of the equations, which are small for a short line of contact: P. Deuflhard, Newton Methods for Nonlinear Problems,
+   Springer 2004, section 3.3. Returns the accepted length, or zero; updates z, residual and norm, and gives the ratio
+   of the next step to this one. */
 static real take_step(const arrangement *at, const real *inputs, int max_halvings, real *z, real *norm, real *shortening,
                       workspace *work) {
   const size_t bytes = (size_t)at->size * sizeof *z;
@@ -111,8 +111,8 @@ static void append_step(const arrangement *at, workspace *work) {
   work->updates++;
 }
 
-/* Newton from z, which it moves on; info counts the work, of which there is a budget. It begins with the Jacobian at hand,
-   where that is of this arrangement, and keeps it while it serves. */
+/* Newton's method from z, which it updates; info counts the work, which has a budget. It begins with the present
+   Jacobian if that belongs to this arrangement, and keeps it while steps shrink fast. */
 static newton_result newton(const arrangement *at, const real *inputs, real *z, int max_iterations, workspace *work,
                             contact_info *info) {
   newton_result result = {.status = CONTACT_MAX_ITERATIONS, .residual_norm = HUGE_VAL};

@@ -1,5 +1,5 @@
-/* Derivatives of steps in which what presses goes on to press: gaps are equations of both stages, with second derivatives of
-   the gaps in the stiffness. See cosserat_casadi/motion/contact_gap.py for the formulas. */
+/* Derivatives of steps whose pressing contacts go on pressing: gaps are equations of both stages, with second
+   derivatives of the gaps in the stiffness. See cosserat_casadi/motion/contact_gap.py for the formulas. */
 
 #ifdef CONTACT_RUBS
 static void curve_friction(int stage, int m, const section_gap *gap, int by_inputs, workspace *work);
@@ -22,7 +22,8 @@ static void move_by_inputs(const touch *own, const section_gap *gap, real *moved
   turn_slopes(faces, gap, INPUTS, moved);
 }
 
-/* Takes the changes of the forces' directions from the matrices of a stage, and notes the derivatives of the gaps. */
+/* Subtracts the changes of the forces' directions from the matrices of a stage, and stores the derivatives of the
+   gaps. */
 static void curve_stage(int stage, int by_inputs, workspace *work) {
   for (int m = 0; m < work->part_pressing; m++) {
     const touch *own = work->part_touch + m;
@@ -61,7 +62,8 @@ static real gap_of_stages(int stage, int m, const real *unknowns, const workspac
 #ifdef CONTACT_RUBS
 #include "friction_sensitivity.c"
 #else
-/* How the gaps of both stages answer to forces in these: unknowns that close them. Zero where they depend on each other. */
+/* Response of the gaps at both stages to forces at both stages, factorised. Returns zero if gaps depend on each
+   other. */
 static int border_stages(const stage_factors *factors, workspace *work) {
   const int count = work->part_pressing;
   const int order = STAGES * count;
@@ -89,7 +91,7 @@ static int border_stages(const stage_factors *factors, workspace *work) {
   return factorise_square(order, work->border, 0, work->border_pivots);
 }
 
-/* Columns whose gaps change as they are to, from those of no change of the forces. */
+/* Corrects columns, computed without a change of the forces, so that their gaps change as wanted. */
 static void close_stage_columns(real *columns, workspace *work) {
   const int count = work->part_pressing;
   const int order = STAGES * count;
@@ -106,7 +108,7 @@ static void close_stage_columns(real *columns, workspace *work) {
   }
 }
 
-/* Minus what gaps of both stages change by with a coordinate at the start, or with its rate. */
+/* Minus the change of the gaps at both stages by a coordinate at the start, or by its rate. */
 static void change_gaps_by_start(real size, int column, int lane, workspace *work) {
   const int count = work->part_pressing;
   for (int stage = 0; stage < STAGES; stage++) {
@@ -117,7 +119,7 @@ static void change_gaps_by_start(real size, int column, int lane, workspace *wor
   }
 }
 
-/* The same with an input, its rate or its acceleration. */
+/* Minus the change of the gaps at both stages by an input, its rate or its acceleration. */
 static void change_gaps_by_input(real size, int column, int lane, workspace *work) {
   const int count = work->part_pressing;
   const int inputs = INPUTS > 0 ? INPUTS : 1;

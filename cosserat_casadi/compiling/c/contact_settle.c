@@ -1,17 +1,17 @@
-/* From one arrangement of contacts to one that holds: a force that pulls or a section inside an obstacle says which is
-   tried next. cosserat_casadi/equilibrium/contact/contact_search.py tries all arrangements in this way; here those of
-   the library are tried, and their number is bounded. */
+/* Search for an arrangement of contacts that holds: forces that pull and sections inside obstacles decide which
+   arrangement is tried next. cosserat_casadi/equilibrium/contact/contact_search.py tries all arrangements in this way;
+   here the search tries those of the library, up to a bounded number. */
 
 enum { MOST_OPTIONS = 6 };
 
-/* What may be in place of a contact that is at fault: one or two contacts, or none. */
+/* Replacement of a contact at fault: one or two contacts, or none. */
 typedef struct {
   int count;
   touch touches[2];
 } option;
 
 typedef struct {
-  int touch; /* number of the contact; -1 where a stretch is inside an obstacle that no contact is at */
+  int touch; /* number of the contact; -1 for a stretch inside an obstacle without a contact */
   int options;
   option option[MOST_OPTIONS];
 } change;
@@ -48,7 +48,8 @@ static int add_touch(candidate *to, touch added) {
   return 1;
 }
 
-/* Puts the places of contacts into z; zero where the arrangement is of other contacts, or of another order along a rod. */
+/* Writes the places of contacts into z. Returns zero if the arrangement has other contacts, or another order of them
+   along a rod. */
 static int set_places(const arrangement *at, const candidate *wanted, real *z) {
   if (at->touches != wanted->count) return 0;
   for (int k = 0; k < at->touches; k++) {
@@ -71,7 +72,7 @@ static void offer(change *to, int count, touch first, touch second) {
   added->touches[1] = second;
 }
 
-/* What a contact that pulls may be instead. */
+/* Adds the replacements of a contact that pulls. */
 static void instead_of_pulling(touch own, change *made) {
   const touch first = point(own.rod, own.obstacle, own.start);
   const touch last = point(own.rod, own.obstacle, own.end);
@@ -91,7 +92,7 @@ static void instead_of_pulling(touch own, change *made) {
   }
 }
 
-/* What holds a stretch off that is inside an obstacle, by itself or in place of the contact beside it. */
+/* Adds contacts that hold off a stretch inside an obstacle, further ones or in place of the contact beside it. */
 static void instead_of_entering(const penetration *inside, const touch *beside, change *made) {
   const real here = inside->deepest < 1 - AT_TIP ? inside->deepest : 1;
   const touch deepest = point(inside->rod, inside->obstacle, here);
@@ -118,7 +119,7 @@ static void instead_of_entering(const penetration *inside, const touch *beside, 
   }
 }
 
-/* Puts a candidate to be tried next, or last; what there is no room for is left out. */
+/* Queues a candidate to be tried next, or last; drops it if the queue is full. */
 static void push(workspace *work, int next, const candidate *added) {
   if (work->waiting == CANDIDATES) return;
   if (next) {
@@ -130,7 +131,7 @@ static void push(workspace *work, int next, const candidate *added) {
   work->waiting++;
 }
 
-/* The contacts of an arrangement with some replaced; zero where they are more than any arrangement has. */
+/* Writes the contacts of an arrangement with some replaced. Returns zero if no arrangement has so many. */
 static int changed(const arrangement *at, const real *z, const change *changes, const int *chosen, int count, int from,
                    candidate *made) {
   made->count = 0;
@@ -149,8 +150,8 @@ static int changed(const arrangement *at, const real *z, const change *changes, 
   return 1;
 }
 
-/* What is at fault in an arrangement that is solved; returns the number of changes, zero where it holds. Tells how deep a
-   line of contact is inside its obstacle. */
+/* Finds the faults of a solved arrangement. Returns the number of changes, zero if the arrangement holds, and gives the
+   largest depth of a line of contact in its obstacle. */
 static int find_faults(const arrangement *at, const real *z, change *changes, real *depth_of_lines, workspace *work) {
   penetration found[MOST_FAULTS];
   int is_pulling[TOUCH_ROOM] = {0};
@@ -169,7 +170,7 @@ static int find_faults(const arrangement *at, const real *z, change *changes, re
     touch beside;
     if (number >= 0) {
       beside = touch_at(at, z, number);
-      /* What is inside a stretch of contact is its polynomials' error, and no change of contacts mends it. */
+      /* Depth along a line of contact is the error of its polynomials, which no change of contacts mends. */
       if (beside.is_line && beside.start < found[i].deepest && found[i].deepest < beside.end) {
         *depth_of_lines = larger(*depth_of_lines, found[i].depth);
         continue;
@@ -183,12 +184,12 @@ static int find_faults(const arrangement *at, const real *z, change *changes, re
   return count;
 }
 
-/* Puts what may be instead of an arrangement that is at fault, the likeliest to be tried first. */
+/* Queues the replacements of an arrangement at fault; the likeliest is tried first. */
 static void push_instead(const arrangement *at, const real *z, const change *changes, int count, int from,
                          workspace *work) {
   int chosen[MOST_FAULTS] = {0};
   candidate made;
-  /* The last one that is put is tried first: each fault changed in another way, then all in the likeliest. */
+  /* The queue is last in, first out: first each fault changed in another way, then all faults in the likeliest way. */
   for (int i = count - 1; i >= 0; i--) {
     for (int k = changes[i].options - 1; k > 0; k--) {
       chosen[i] = k;
@@ -199,7 +200,7 @@ static void push_instead(const arrangement *at, const real *z, const change *cha
   if (changed(at, z, changes, chosen, count, from, &made)) push(work, 1, &made);
 }
 
-/* Puts what is beside contacts whose equations have no solution near by, to be tried last. */
+/* Queues neighbours of contacts whose equations have no solution near by, to be tried last. */
 static void push_beside(const candidate *failed, workspace *work) {
   for (int k = 0; k < failed->count; k++) {
     const touch own = failed->touches[k];
@@ -228,7 +229,7 @@ static void push_beside(const candidate *failed, workspace *work) {
   }
 }
 
-/* Whether an arrangement was tried already from places that are much the same. */
+/* Whether an arrangement was tried already from nearly equal places. */
 static int was_tried(int number, const real *z, int tries, const workspace *work) {
   const arrangement *at = ARRANGEMENT + number;
   const int first = at->unknowns + at->forces;
@@ -241,7 +242,7 @@ static int was_tried(int number, const real *z, int tries, const workspace *work
   return 0;
 }
 
-/* Guess of an arrangement for contacts that are wanted; -1 where the library has none such. */
+/* Writes the guess of an arrangement with the wanted contacts; -1 if the library has none. */
 static int guess(const candidate *wanted, const real *inputs, real *z, workspace *work) {
   const arrangement *from = ARRANGEMENT + work->solved[wanted->from].arrangement;
   const real *old = work->solved[wanted->from].z;
@@ -260,8 +261,8 @@ static int guess(const candidate *wanted, const real *inputs, real *z, workspace
   return -1;
 }
 
-/* Finds contacts that hold for these inputs from those of solved[0], the last solution. Leaves the arrangement and z in
-   solved[result] and the positions of the nodes in the workspace; -1 where none holds. */
+/* Finds contacts that hold for these inputs, starting with the contacts of the last solution, solved[0]. Leaves the
+   arrangement and z in solved[result] and the positions of the nodes in the workspace; returns -1 if none holds. */
 static int settle(const real *inputs, int max_iterations, real *index, workspace *work, contact_info *info) {
   candidate first = {.count = 0, .from = 0};
   const arrangement *start = ARRANGEMENT + work->solved[0].arrangement;
@@ -293,7 +294,7 @@ static int settle(const real *inputs, int max_iterations, real *index, workspace
     real depth_of_lines = 0;
     const int faults = find_faults(at, z, changes, &depth_of_lines, work);
     if (faults == 0) {
-      /* Polynomials that do not follow the obstacle do not resolve the rod. */
+      /* If polynomials do not follow the obstacle, the modes do not resolve the rod. */
       *index = larger(*index, depth_of_lines / ACCEPTED);
       info->status = CONTACT_CONVERGED;
       return solved;

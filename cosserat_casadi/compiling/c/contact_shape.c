@@ -2,14 +2,14 @@
 
 #include "interpolation.c"
 
-/* The element of a rod that an abscissa lies in; an end is of the element that it ends. */
+/* The element of a rod that contains an abscissa; an inner end belongs to the element before it. */
 static int element_at(const arrangement *at, const real *z, int rod, real X) {
   int e = 0;
   while (e + 1 < at->rods[rod].elements && X > end_of_element(at, z, rod, e + 1)) e++;
   return e;
 }
 
-/* Where an abscissa is in an element, from 0 to 1. */
+/* Position of an abscissa in its element, from 0 to 1. */
 static real local_abscissa(const arrangement *at, const real *z, int rod, int element, real X) {
   const real start = end_of_element(at, z, rod, element);
   const real end = end_of_element(at, z, rod, element + 1);
@@ -32,7 +32,7 @@ static real polynomial(int is_chebyshev, const real *coefficients, int count, re
 
 static real nominal_width(const rod_elements *elements, int e) { return elements->nominal[e + 1] - elements->nominal[e]; }
 
-/* Strain of a component at an abscissa, in the scale of its coordinates; they are counted in the nominal width. */
+/* Strain of a component at an abscissa, in the scale of its coordinates, which refer to the nominal width. */
 static real strain_at(const arrangement *at, const real *z, int rod, int first, int modes, real X) {
   const rod_elements *elements = at->rods + rod;
   const int e = element_at(at, z, rod, X);
@@ -42,8 +42,7 @@ static real strain_at(const arrangement *at, const real *z, int rod, int first, 
   return value * nominal_width(elements, e) / width;
 }
 
-/* Unknowns of the shape `old` on the elements and modes of another arrangement, whose places stand in z already; forces
-   are zero. */
+/* Fits the shape `old` by the unknowns of another arrangement, whose places stand in z already; forces are zero. */
 static void project(const arrangement *from, const real *old, const arrangement *to, real *z) {
   for (int rod = 0; rod < RODS; rod++) {
     const rod_modes *own = to->modes + rod;
@@ -73,7 +72,8 @@ static void project(const arrangement *from, const real *old, const arrangement 
   for (int i = 0; i < to->forces; i++) z[to->unknowns + i] = 0;
 }
 
-/* Forces that balance a shape best: its balance is linear in them. Columns that add little are left out. */
+/* Forces that balance a shape best in least squares: the balance is linear in them. Columns that add little are left
+   out. */
 static void fit_forces(const arrangement *at, const real *inputs, real *z, workspace *work) {
   const int n = at->size;
   const int unknowns = at->unknowns;
@@ -89,7 +89,7 @@ static void fit_forces(const arrangement *at, const real *inputs, real *z, works
     memcpy(columns + j * unknowns, work->jacobian + (unknowns + j) * n, (size_t)unknowns * sizeof *columns);
     order[j] = j;
   }
-  /* Modified Gram-Schmidt with the largest column that is left next. */
+  /* Modified Gram-Schmidt; the largest remaining column comes next. */
   int rank = 0;
   real first_norm = 0;
   for (int k = 0; k < at->forces; k++) {
@@ -108,7 +108,7 @@ static void fit_forces(const arrangement *at, const real *inputs, real *z, works
     order[best] = order[k];
     order[k] = chosen;
     for (int i = 0; i < k; i++) {
-      /* What was taken off a column before stands with the column. */
+      /* The coefficients of earlier projections stand in the column's place. */
       const real kept = triangle[i * (CONTACT_FORCES + 1) + best];
       triangle[i * (CONTACT_FORCES + 1) + best] = triangle[i * (CONTACT_FORCES + 1) + k];
       triangle[i * (CONTACT_FORCES + 1) + k] = kept;
@@ -161,12 +161,12 @@ static real gap_at(const pair_entry *pair, const real *position, real X, workspa
   return (distance - radius) / own->length;
 }
 
-/* Whether the straight way of one section leads through an obstacle that it must not enter. */
+/* Whether a section on its straight way enters an obstacle. */
 static int leads_through(const pair_entry *pair, real X, const real *start, const real *end, real way, workspace *work) {
   const real before = larger(gap_at(pair, start, X, work), 0);
   const real after = larger(gap_at(pair, end, X, work), 0);
   const real length = ROD[pair->rod].length;
-  /* A distance changes by no more than the way: on a shorter one nothing can have come between. */
+  /* A distance changes by at most the way: on a shorter way the section cannot have met the obstacle. */
   if (way <= (before + after) * length) return 0;
   const int looks = (int)smaller(larger(way / (STRIDE * length), 1), MOST_LOOKS);
   for (int k = 1; k <= looks; k++) {
@@ -178,18 +178,18 @@ static int leads_through(const pair_entry *pair, real X, const real *start, cons
   return 0;
 }
 
-/* How far along the rod no other section can be led through an obstacle either, relative to its length: gaps and ways
-   change by no more than X does, but for what the rod stretches and tapers. */
+/* Distance along the rod, over its length, within which no other section can pass through an obstacle either: gaps and
+   ways change by at most the change of X, apart from stretch and taper. */
 static real clear_distance(const pair_entry *pair, real X, const real *start, const real *end, real way, workspace *work) {
   const real share = way / ROD[pair->rod].length;
-  /* Where sections hardly move those beside them do not move by twice what counts as deep either. */
+  /* Beside sections that hardly move, others move by less than twice the depth that counts. */
   if (share <= DEEP / 2) return FARTHEST;
   const real gaps = larger(gap_at(pair, start, X, work), 0) + larger(gap_at(pair, end, X, work), 0);
   return larger(larger((gaps - share) / 4, DEEP - share / 2) / FASTEST, CLOSEST);
 }
 
-/* Whether no section moves far from one shape to the other, and none through an obstacle. The nodes of both stand in the
-   workspace. Each step along the rod is at least CLOSEST. */
+/* Whether, from one shape to the other, every section moves little and none passes through an obstacle. The nodes of
+   both shapes stand in the workspace. Each step along the rod is at least CLOSEST. */
 static int is_near(const arrangement *from, const real *old, const arrangement *to, const real *z, workspace *work) {
   for (int rod = 0; rod < OWNERS; rod++) {
     real X = first_section(rod);

@@ -4,8 +4,8 @@
    of a point of contact follows a variation; of the second variation of -N min d the part N (dd'/dx)^2 / d'' is left to add.
    cosserat_casadi/equilibrium/contact/contact_judgement.py does the same in Python.
 
-   All arrangements are judged as one problem of FREE unknowns that vary and HELD constraints: those that an arrangement
-   has fewer of are held, each by a constraint of its own. */
+   All arrangements are judged as one problem with FREE unknowns and HELD constraints; each surplus unknown of a
+   smaller arrangement is fixed by a constraint. */
 
 static const real NO_UNKNOWNS[N] = {0};
 
@@ -16,8 +16,8 @@ typedef struct {
   memory *room;
 } problem;
 
-/* Scale of each unknown of an arrangement, zero of multipliers: root of its energy unit, and what takes it from an element
-   that has moved to one at rest, in whose width strains are counted. */
+/* Scale of each unknown of an arrangement, zero for multipliers: root of its energy unit times the factor from an
+   element with moved ends to the nominal width, in which strains are measured. */
 static void scale_unknowns(const arrangement *at, const real *z, real *scale) {
   memcpy(scale, at->roots, (size_t)at->unknowns * sizeof *scale);
   for (int rod = 0; rod < RODS; rod++) {
@@ -32,7 +32,7 @@ static void scale_unknowns(const arrangement *at, const real *z, real *scale) {
   }
 }
 
-/* A row of the Jacobian as a constraint on the unknowns that vary, which is the next one that is held. */
+/* Writes a row of the Jacobian as the next constraint on the free unknowns. */
 static int hold(const arrangement *at, int row, const real *scale, const workspace *work, int held, real *matrix) {
   for (int i = 0, free = 0; i < at->unknowns; i++) {
     if (scale[i] != 0) matrix[free++ * N + FREE + held] = work->jacobian[i * at->size + row] / scale[i];
@@ -40,7 +40,7 @@ static int hold(const arrangement *at, int row, const real *scale, const workspa
   return held + 1;
 }
 
-/* Adds what the place of a point of contact gives, which slides as the rod moves. */
+/* Adds the part of the second variation by the place of a point of contact, which slides as the rod moves. */
 static void add_slide(const arrangement *at, int row, real stiffness, const real *scale, const workspace *work,
                       real *matrix) {
   for (int j = 0, column = 0; j < at->unknowns; j++) {
@@ -54,7 +54,7 @@ static void add_slide(const arrangement *at, int row, real stiffness, const real
   }
 }
 
-/* The contacts that press, as constraints behind those that are held already; returns how many are held then. */
+/* Appends constraints for the contacts that press; returns the number of all constraints. */
 static int hold_contacts(const problem *judged, const real *scale, int held, real *matrix) {
   const arrangement *at = judged->at;
   const real *z = judged->state->z;
@@ -93,7 +93,8 @@ static void jacobian_at(const problem *judged, const real *unused, real *matrix,
   for (int j = 0; j < at->unknowns; j++) {
     for (int i = 0; i < at->unknowns; i++) {
       const real row = scale[i] != 0 ? scale[i] : 1, column = scale[j] != 0 ? scale[j] : 1;
-      /* A balance is in the unit of its energy, of which the scale has the root; widths count once on either side. */
+      /* A balance has the unit of its energy, and the scale is the root of it; factors of widths count once on either
+         side. */
       const real unit = scale[i] != 0 ? at->roots[i] * at->roots[i] / row : 1;
       matrix[place[j] * N + place[i]] = unit * work->jacobian[j * n + i] / column;
     }
@@ -102,7 +103,8 @@ static void jacobian_at(const problem *judged, const real *unused, real *matrix,
   for (; free < FREE; free++) matrix[free * N + FREE + held++] = 1;
 }
 
-/* No equilibrium alike is looked for beside one in contact: as in Python, one at which a variation costs none is critical. */
+/* As in Python, no equivalent equilibrium is sought in contact: an equilibrium with a variation that costs no energy is
+   critical. */
 static int solve(const problem *judged, const real *x) {
   (void)judged;
   (void)x;

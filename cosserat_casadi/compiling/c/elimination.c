@@ -5,7 +5,7 @@
    A matrix is complex, of size N, or real, with an unknown for each stage. A column of complex numbers is two planes: its
    real parts, then its imaginary ones. Matrices are stored column after column. */
 
-/* Whether numbers are complex (2 planes), how many stages each unknown stands for, and which pivots count as zero beside
+/* Kind of a matrix: planes of a number (2 if complex), stages of each unknown, and the pivot that counts as zero beside
    entries of one. */
 typedef struct {
   int planes;
@@ -23,7 +23,7 @@ static matrix_kind matrix_of_stages(void) {
   return kind;
 }
 
-/* A real matrix; pivots are too small where there is no mass to speak of. */
+/* A real matrix; its pivots are too small if there is almost no mass. */
 static matrix_kind matrix_of_masses(void) {
   const matrix_kind kind = {1, 1, MASSLESS};
   return kind;
@@ -32,7 +32,7 @@ static matrix_kind matrix_of_masses(void) {
 /* Vectors have as many lanes as a matrix has planes, which lie one after the other, or FOUR: those of four right-hand sides
    of a real matrix, which lie side by side. */
 
-/* Rows of b less the columns first to last times the entries of b there. Some rows stay in registers. */
+/* Subtracts the columns first to last, times the entries of b there, from rows of b. Some rows stay in registers. */
 static void subtract_real(const real *a, int order, int first, int last, int from, int to, real *b) {
   int i = from;
   for (; i + 4 <= to; i += 4) {
@@ -169,7 +169,7 @@ static void substitute_forward(int lanes, const real *a, int order, int count, c
   }
 }
 
-/* Backward substitution, the unknowns of the other columns known. */
+/* Backward substitution; the unknowns of the other columns are known. */
 static void substitute_backward(int lanes, const real *a, int order, int count, real *b) {
   const int planes = lanes == 2 ? 2 : 1;
   subtract_columns(lanes, a, order, count, order, 0, count, b);
@@ -184,7 +184,7 @@ static void substitute_backward(int lanes, const real *a, int order, int count, 
   }
 }
 
-/* Size of an entry: of a complex one the sum of those of its parts. */
+/* Size of an entry; for a complex one the sum of the sizes of its parts. */
 static real size_of(int planes, int order, const real *entry) {
   return planes == 1 ? ABSOLUTE(entry[0]) : ABSOLUTE(entry[0]) + ABSOLUTE(entry[order]);
 }
@@ -203,7 +203,7 @@ static int eliminate_columns(int planes, real tiny, real *a, int order, int coun
     }
     pivots[k] = best;
     for (int j = 0; best != k && j <= k; j++) swap_entries(planes, order, k, best, a + j * planes * order);
-    /* Not "size <= bound": a pivot that is no number has to end this too. */
+    /* Not "size <= bound": a pivot that is not a number must end the elimination too. */
     if (!(size_of(planes, order, column + k) > tiny)) return 0;
     const real whole = column[k];
     const real imaginary = planes == 1 ? 0 : column[order + k];
@@ -251,7 +251,7 @@ static int scales_of(matrix_kind kind, const real *values, real *rows, real *col
   return 1;
 }
 
-/* Eliminates front after front, then the interface with what the fronts leave of it. */
+/* Eliminates front after front, then the Schur complement of the interface. */
 static int eliminate_in(const elimination *order, matrix_kind kind, const real *values, const stage_factors *found) {
   real *a = found->matrix;
   int *pivots = found->pivots;
@@ -327,7 +327,7 @@ static int gather_front(const stage_front *own, matrix_kind kind, int lanes, con
   return any;
 }
 
-/* Puts the solution of one front where it belongs. */
+/* Writes the solution of one front to its places. */
 static void scatter_front(const stage_front *own, matrix_kind kind, int lanes, const real *values, real *b) {
   const int size = order_of(own, kind);
   const int stride = entry_stride(lanes);
@@ -340,7 +340,7 @@ static void scatter_front(const stage_front *own, matrix_kind kind, int lanes, c
   }
 }
 
-/* Adds what a front leaves of the interface's right-hand sides to these, or gives the front the interface's solution. */
+/* Adds a front's part of the interface's right-hand sides, or copies the interface's solution to the front. */
 static void exchange(const stage_front *own, matrix_kind kind, int lanes, int interface_count, int give, real *values,
                      real *interface) {
   const int size = order_of(own, kind);

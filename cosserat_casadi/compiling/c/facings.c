@@ -7,7 +7,7 @@ typedef struct {
   int count;
   int unknowns; /* numbers of the arguments of the functions */
   int inputs;
-  int is_known; /* whether the positions were asked for before */
+  int is_known; /* whether the positions were computed before */
   kernel *positions;
   kernel *velocities; /* null in the law without friction, as the second derivative */
   kernel *gradient;   /* of the sum of positions by weights */
@@ -36,14 +36,14 @@ typedef struct facing_rod {
   real stride;
   real coefficients[3]; /* of friction along a rod, back, and across it */
   kernel *surface;      /* point to distance, normal, curvature; null where another rod is in the place of an obstacle */
-  kernel *distance;     /* point to distance; null there */
+  kernel *distance;     /* point to distance; null for another rod */
   kernel *rubbing;      /* state and section to velocity along the surface; null without friction */
   real *fitted;         /* room for coefficients of the polynomials through the nodes */
   real *gaps_along;     /* room for the gaps that are looked at first */
   struct facing_rod *other; /* rod that it may touch in the place of an obstacle, whose points stand behind its own; or null */
-  real *seen_from;          /* of such a rod: the point that it is looked at from; else null */
-  real *looked_at;          /* of such a rod: positions of the sections that are looked at first */
-  real *balls;              /* of such a rod: centre and radius of a ball about these sections of each element */
+  real *seen_from;          /* point from which that rod is seen; null without it */
+  real *looked_at;          /* positions of the sections of that rod that are looked at first */
+  real *balls;              /* centre and radius of a ball about these sections of each element of that rod */
 } facing;
 
 #define fitted_of(own, work) (own)->fitted
@@ -65,8 +65,8 @@ typedef struct {
   int filled;
 } writing;
 
-/* Writes numbers at this place; where an argument is full, they go on in the next one. Returns whether they are others than
-   those of the last call. */
+/* Writes numbers at this place, and goes on in the next argument where one is full. Returns whether the numbers differ
+   from those of the last call. */
 static int put(writing *to, const real *values, int count) {
   kernel *own = to->function;
   int is_new = 0;
@@ -98,7 +98,7 @@ static const real *result_of(kernel *function, int count) {
   return function->result;
 }
 
-/* Positions of the points, which are computed once for a state that is asked for again. */
+/* Positions of the points, computed once for repeated calls with a state. */
 static const real *positions_at(moving_points *points, const real *x, const real *inputs) {
   writing to = {points->positions, 0, 0};
   const int is_new = put(&to, x, points->unknowns) | put(&to, inputs, points->inputs);

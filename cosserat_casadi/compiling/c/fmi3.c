@@ -29,10 +29,10 @@ enum {
 static const double DEFAULT_INPUTS[INPUT_ROOM] = FMU_DEFAULTS;
 static const double DEFAULT_PARAMETERS[PARAMETER_ROOM] = FMU_PARAMETER_DEFAULTS;
 
-/* Which inputs move over a communication step: those that move rods or prescribe a length. */
+/* Whether each input moves over a communication step: it does if it moves rods or prescribes a length. */
 static const int MOVES[INPUT_ROOM] = FMU_MOVES;
 
-/* Which inputs are the first entry of a quaternion. */
+/* Whether each input is the first entry of a quaternion. */
 static const int BEGINS_QUATERNION[INPUT_ROOM] = FMU_QUATERNIONS;
 
 typedef enum { INSTANTIATED, INITIALISING, STEPPING, TERMINATED } mode;
@@ -52,7 +52,7 @@ typedef struct {
   moment before; /* at the start of the last communication step */
   double last_step;
   double lead;              /* of the rate at its end */
-  double sign[INPUT_ROOM];  /* of its inputs over those that were given: a quaternion may be turned round */
+  double sign[INPUT_ROOM];  /* signs of its inputs over the given inputs: a quaternion may be negated */
   double given[INPUT_ROOM]; /* inputs as the importer set them */
   double parameters[PARAMETER_ROOM];
   double step;

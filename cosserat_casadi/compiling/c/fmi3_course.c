@@ -23,8 +23,8 @@ typedef struct {
   double acceleration[INPUT_ROOM];
 } moving_inputs;
 
-/* The given inputs, with each quaternion on the side of the one before, and the signs that this takes: q and -q are one
-   orientation, and between them there is none. */
+/* Writes the given inputs, with each quaternion on the side of the last one, and the signs for this: q and -q are the
+   same orientation, but the way between them is none. */
 static void on_one_side(const snapshot *held, double *to, double *sign) {
   for (int i = 0; i < FMU_INPUTS; i++) {
     sign[i] = 1;
@@ -41,7 +41,7 @@ static void on_one_side(const snapshot *held, double *to, double *sign) {
   }
 }
 
-/* Share of the change of the mean rate that the rate at the end of a step is beyond its mean rate. */
+/* Rate at the end of a step minus its mean rate, over the change of the mean rate. */
 static double lead_of_rate(const snapshot *held, double duration) {
   return held->last_step > 0 ? duration / (duration + held->last_step) : 1;
 }
@@ -53,7 +53,7 @@ static double rate_at_end(const snapshot *held, int input, double given, double 
   return mean + lead_of_rate(held, duration) * (mean - mean_before);
 }
 
-/* Inputs so many seconds after the start of a communication step, as its first or its second half has them. */
+/* Inputs at a time after the start of a communication step, s, by the acceleration of its first or second half. */
 static void inputs_on(const course *way, double time, int is_second_half, moving_inputs *at) {
   const double left = way->duration - time;
   for (int i = 0; i < FMU_INPUTS; i++) {
@@ -78,7 +78,7 @@ static void inputs_on(const course *way, double time, int is_second_half, moving
   }
 }
 
-/* Steps of the integrator in a communication step: as many in each half where an input moves. */
+/* Number of steps of the integrator in a communication step: even if an input moves, so that each half has as many. */
 static int count_steps(const snapshot *held, double duration) {
   int halves = 1;
   for (int i = 0; i < FMU_INPUTS; i++) halves = MOVES[i] ? 2 : halves;

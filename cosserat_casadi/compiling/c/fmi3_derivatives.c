@@ -14,7 +14,7 @@ typedef struct {
   double parameters[PARAMETER_ROOM];
 } direction;
 
-/* How the equilibrium at the start changes with inputs and parameters; null, or why it is not known. */
+/* Derivatives of the equilibrium at the start by inputs and parameters. Returns null, or a reason without them. */
 static const char *change_at_rest(instance *self, const direction *along) {
   const moment *now = &self->held.now;
   if (FMU_STARTS_UNLOADED) return 0;
@@ -26,8 +26,8 @@ static const char *change_at_rest(instance *self, const direction *along) {
   return 0;
 }
 
-/* How the state at the end of the last communication step changes with the inputs that were given for it; null, or why it
-   is not known. The steps of the integrator are taken again, each with its derivatives. */
+/* Derivatives of the state at the end of the last communication step by the inputs given for it. Returns null, or a
+   reason without them. The integrator takes its steps again, each with its derivatives. */
 static const char *change_of_step(instance *self, const direction *along) {
   static const double zero[INPUT_ROOM] = {0};
   const snapshot *held = &self->held;
@@ -58,7 +58,7 @@ static const char *change_of_step(instance *self, const direction *along) {
   return 0;
 }
 
-/* Takes what an importer asks for as a direction; null, or why there is no derivative. */
+/* Reads the direction that an importer asks for. Returns null, or a reason without a derivative. */
 static const char *read_direction(const snapshot *held, const fmi3ValueReference knowns[], const fmi3Float64 seed[],
                                   size_t count, direction *along) {
   const int stepped = held->mode == STEPPING && held->last_step > 0;
@@ -68,7 +68,7 @@ static const char *read_direction(const snapshot *held, const fmi3ValueReference
       const int input = (int)knowns[k] - FIRST_INPUT;
       const double change = stepped ? held->sign[input] * seed[k] : seed[k];
       along->inputs[input] += change;
-      /* The rate at the end is the mean rate, and the lead of what that changes by. */
+      /* The rate at the end is the mean rate plus lead times its change. */
       if (stepped && MOVES[input]) along->inputs_rate[input] += change * (1 + held->lead) / held->last_step;
     } else if (is_between(knowns[k], FIRST_PARAMETER, VARIABLES)) {
       if (stepped) return "after the first step derivatives are with respect to inputs alone";
@@ -80,8 +80,8 @@ static const char *read_direction(const snapshot *held, const fmi3ValueReference
   return 0;
 }
 
-/* Derivatives of outputs: of those in equilibrium before the first step, with inputs and parameters; then of those at the
-   end of the last communication step, with the inputs that were given for it. */
+/* Derivatives of outputs: before the first step at the equilibrium, by inputs and parameters; later at the end of the
+   last communication step, by the inputs given for it. */
 FMI3_EXPORT fmi3Status fmi3GetDirectionalDerivative(fmi3Instance handle, const fmi3ValueReference unknowns[],
                                                     size_t unknown_count, const fmi3ValueReference knowns[],
                                                     size_t known_count, const fmi3Float64 seed[], size_t seed_count,

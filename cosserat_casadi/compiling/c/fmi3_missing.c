@@ -1,6 +1,6 @@
-/* What this FMU does not offer: variables of other types, and what belongs to other kinds of FMU. */
+/* Functions that this FMU does not offer: variables of other types, and functions of other kinds of FMU. */
 
-/* Variables of other types there are none. */
+/* The FMU has no variables of other types. */
 #define NO_GETTER(Type)                                                                                        \
   FMI3_EXPORT fmi3Status fmi3Get##Type(fmi3Instance handle, const fmi3ValueReference references[], size_t count, \
                                        fmi3##Type values[], size_t value_count) {                              \

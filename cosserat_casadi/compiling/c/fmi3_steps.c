@@ -22,7 +22,7 @@ static fmi3Status settle(instance *self) {
   memset(now->inputs_rate, 0, sizeof now->inputs_rate);
   if (!FMU_STARTS_UNLOADED) found = fmu_solve(now->inputs, parameters, x, &self->workspace);
 #ifdef FMU_START
-  /* What touches exactly at the scene's own numbers is in its own start; a solve knows of no contact. */
+  /* Only the scene's own start has exact contacts; a solve has none. */
   const int inputs_of_scene = memcmp(now->inputs, DEFAULT_INPUTS, sizeof now->inputs) == 0;
   const int parameters_of_scene = memcmp(parameters, DEFAULT_PARAMETERS, sizeof self->held.parameters) == 0;
   if (found != FMU_CONVERGED && inputs_of_scene && parameters_of_scene) {

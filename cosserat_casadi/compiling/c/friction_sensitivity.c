@@ -2,7 +2,7 @@
    each tangent then: the slide is zero; or the drag turns with the slide, of which it is the opposite, and grows with the
    force along the normal. See contact_friction.c. */
 
-/* How a drag that slips is weighed against the slide that it turns with; any share between zero and one will do. */
+/* Weight of a slipping drag against its slide; any share between zero and one works. */
 static const real TURNING = (real)0.5;
 
 /* Change of a force with that of the direction of the rod. */
@@ -14,8 +14,9 @@ static void friction_by_along(const touch *own, const real *along, const real *d
   }
 }
 
-/* Takes the change of the friction of a section by so many numbers that move it from matrices of a stage: derivatives of
-   slides, of the direction and of the force, of 4 + N rows; moved is null where they move no section along the rod. */
+/* Subtracts the change of the friction of a section by the numbers that move it from matrices of a stage: derivatives
+   of slides, of the direction and of the force, with 4 + N rows; moved is null if these numbers move no section along
+   the rod. */
 static void take_friction(int stage, int m, const real *derivatives, const real *by_place, const real *shift, int columns,
                           real (*entries)[N], workspace *work) {
   const touch *own = work->part_touch + m;
@@ -32,7 +33,7 @@ static void take_friction(int stage, int m, const real *derivatives, const real 
   }
 }
 
-/* How a section slides along the rod with numbers that move it. */
+/* Derivatives of the place of a section along the rod by the numbers that move it. */
 static void shifts_of(const touch *own, const section_gap *gap, const real *moved, int columns, real *shift) {
   const int slides = own->slides && gap->place > 0 && gap->place < 1;
   for (int j = 0; j < columns; j++) {
@@ -130,7 +131,7 @@ static void curve_friction(int stage, int m, const section_gap *gap, int by_inpu
   }
 }
 
-/* How the law of a section at a stage weighs the changes of its slide, of its drag and of its force along the normal. */
+/* Weights of the changes of slide, drag and normal force in the law of a section at a stage. */
 static void law_of(int stage, int m, real by_slide[2][2], real by_drag[2][2], real by_force[2], const workspace *work) {
   const touch *own = work->part_touch + m;
   const real *drag = own->drags[stage];
@@ -162,13 +163,14 @@ static void rows_of_stages(int stage, int m, const real *unknowns, real *rows, w
   }
 }
 
-/* Rows of the law from those of gap and slides, in place. */
+/* Turns rows of gap and slides into rows of the law, in place. */
 static void obey_law(real by_slide[2][2], real *rows) {
   const real slide[2] = {rows[1], rows[2]};
   for (int a = 0; a < 2; a++) rows[1 + a] = inner_of_two(by_slide[a], slide);
 }
 
-/* How gaps and the law of both stages answer to forces and drags in these. Zero where they depend on each other. */
+/* Response of gaps and the law at both stages to forces and drags at both stages, factorised. Returns zero if they
+   depend on each other. */
 static int border_stages(const stage_factors *factors, workspace *work) {
   const int count = work->part_pressing;
   const int order = ROWS * count * STAGES;
@@ -211,7 +213,7 @@ static int border_stages(const stage_factors *factors, workspace *work) {
       obey_law(by_slide, rows);
       if (j / ROWS == q) most = larger(most, larger(ABSOLUTE(rows[1]), ABSOLUTE(rows[2])));
     }
-    /* As many that stick hold what does not stretch. */
+    /* Several sticking sections share the force that holds a rod which does not stretch. */
     const real yielding = most > 0 ? YIELDING * most : 1;
     const int sticks = rubs(work->part_touch + m) && !work->part_touch[m].slips[stage];
     for (int a = 0; a < 2; a++) {
@@ -224,7 +226,7 @@ static int border_stages(const stage_factors *factors, workspace *work) {
   return factorise_square(order, matrix, 0, work->law_pivots);
 }
 
-/* Columns whose gaps and slides change as they are to, from those of no change of the forces. */
+/* Corrects columns, computed without a change of the forces, so that gaps and slides change as wanted. */
 static void close_stage_columns(real *columns, workspace *work) {
   const int count = work->part_pressing;
   const int order = ROWS * count * STAGES;
@@ -245,7 +247,7 @@ static void close_stage_columns(real *columns, workspace *work) {
   }
 }
 
-/* Minus what gaps and slides of both stages change by with a coordinate at the start, or with its rate. */
+/* Minus the change of gaps and slides at both stages by a coordinate at the start, or by its rate. */
 static void change_gaps_by_start(real size, int column, int lane, workspace *work) {
   const int count = work->part_pressing;
   const int of_rate = column >= N;
@@ -261,7 +263,7 @@ static void change_gaps_by_start(real size, int column, int lane, workspace *wor
   }
 }
 
-/* The same with an input, its rate or its acceleration. */
+/* Minus the change of gaps and slides at both stages by an input, its rate or its acceleration. */
 static void change_gaps_by_input(real size, int column, int lane, workspace *work) {
   const int count = work->part_pressing;
   const int inputs = INPUTS > 0 ? INPUTS : 1;

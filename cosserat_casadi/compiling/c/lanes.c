@@ -5,7 +5,7 @@
 
    Uses of the scene: the equations in lanes, which are declared below, and given_of_row. */
 
-enum { ROWS = SOLVER_ROWS_TOGETHER /* under way: enough of them wait for the same */ };
+enum { ROWS = SOLVER_ROWS_TOGETHER /* rows under way: enough of them wait for the same result */ };
 
 /* Inputs, and parameters where there are any, of all rows; unknowns and how each row ended. */
 typedef struct {
@@ -15,7 +15,7 @@ typedef struct {
   solver_info *info;
 } batch_of_rows;
 
-/* What a row waits for. */
+/* Result that a row waits for. */
 typedef enum {
   WAITS_FOR_NOTHING,
   WAITS_FOR_FIRST_TANGENT,
@@ -45,7 +45,7 @@ typedef struct {
 
 typedef solver_lanes_room lanes_room;
 
-/* What the solver is given of a row; it may lie in the workspace. */
+/* The solver's inputs of a row; they may lie in the workspace. */
 static const real *given_of_row(const batch_of_rows *batch, int i, workspace *work);
 
 /* The equations in the lanes of a room: results for x, inputs and load_factor. */
@@ -115,7 +115,7 @@ static void end_correction(row *own) {
   }
 }
 
-/* Leaves minus the residual, in the order of the pivots, where the step belongs. */
+/* Writes minus the residual, in the order of the pivots, to the place of the step. */
 static void begin_newton_step(row *own) {
   real *step = place_of_step(own->now.spare);
   own->newton.result.iterations++;
@@ -217,7 +217,7 @@ static void after_resolution(row *own) {
 
 /* ---- Rows together ---- */
 
-/* The unknowns at which a row waits to be evaluated. */
+/* Unknowns of the evaluation that a row waits for. */
 static const real *unknowns_of(const row *own) {
   if (own->state == WAITS_FOR_RESOLUTION) return own->now.point->x;
   return own->now.next->x;
@@ -243,7 +243,7 @@ static void evaluate_in_lanes(waiting state, lanes_room *room) {
   }
 }
 
-/* Where a row wants what it waits for, and how many numbers of it. */
+/* Place and size of the result that a row waits for. */
 static real *wanted_by(row *own, int *count) {
   *count = N;
   switch (own->state) {
@@ -263,14 +263,14 @@ static real *wanted_by(row *own, int *count) {
   }
 }
 
-/* Pivots of a Jacobian; whether that was finite. */
+/* Pivots of a Jacobian, and whether it was finite. */
 static int take_pivots(const lanes_room *room, int lane, jacobian_factors *factors) {
   for (int i = 0; i < N; i++) factors->pivots[i] = room->pivots[i * LANES + lane];
   factors->regular = room->regular[lane];
   return room->finite[lane];
 }
 
-/* A row goes on with what it has waited for. */
+/* A row goes on with the result that it waited for. */
 static void resume(row *own, const lanes_room *room, int lane) {
   switch (own->state) {
     case WAITS_FOR_FIRST_TANGENT:
@@ -299,7 +299,7 @@ static void resume(row *own, const lanes_room *room, int lane) {
   }
 }
 
-/* What most rows wait for; nothing where none is under way. */
+/* The result that most rows wait for; none without rows under way. */
 static waiting most_awaited(const row *rows) {
   int counts[WAITS_FOR_RESOLUTION + 1] = {0};
   waiting most = WAITS_FOR_NOTHING;
@@ -312,7 +312,7 @@ static waiting most_awaited(const row *rows) {
   return most;
 }
 
-/* The inputs of rows, and how much of their loads acts. */
+/* The inputs of rows, and the share of their loads that acts. */
 static void gather_loads(row *const *rows, lanes_room *room) {
   const real *inputs[LANES];
   for (int lane = 0; lane < LANES; lane++) {
@@ -322,7 +322,7 @@ static void gather_loads(row *const *rows, lanes_room *room) {
   gather_lanes(inputs, INPUTS, room->inputs);
 }
 
-/* Evaluates the equations for some rows; lanes that are left over repeat the first. */
+/* Evaluates the equations for some rows; surplus lanes repeat the first row. */
 static void evaluate_rows(row *const *rows, waiting state, lanes_room *room) {
   const real *x[LANES];
   for (int lane = 0; lane < LANES; lane++) x[lane] = unknowns_of(rows[lane]);
@@ -331,7 +331,7 @@ static void evaluate_rows(row *const *rows, waiting state, lanes_room *room) {
   evaluate_in_lanes(state, room);
 }
 
-/* Hands out results; lanes that are left over write once more what the first has. */
+/* Hands out results; surplus lanes write the result of the first row again. */
 static void scatter_results(row *const *rows, const lanes_room *room) {
   real *wanted[LANES];
   int numbers = 0;
@@ -339,7 +339,7 @@ static void scatter_results(row *const *rows, const lanes_room *room) {
   scatter_lanes(room->results, numbers, wanted);
 }
 
-/* Hands out steps, and where they serve what is behind them. */
+/* Hands out steps, and the products behind them where steps are taken. */
 static void scatter_steps(row *const *rows, const lanes_room *room) {
   real *steps[LANES];
   real *x[LANES];
@@ -356,7 +356,7 @@ static void scatter_steps(row *const *rows, const lanes_room *room) {
   scatter_lanes(room->results, N, residuals);
 }
 
-/* Takes quasi-Newton steps from where rows are. */
+/* Takes quasi-Newton steps from the iterates of rows. */
 static void take_steps(row *const *rows, lanes_room *room) {
   const real *factors[LANES];
   const real *steps[LANES];
@@ -389,7 +389,7 @@ static void take_steps(row *const *rows, lanes_room *room) {
   scatter_steps(rows, room);
 }
 
-/* Gives rows that wait for the same what they wait for. */
+/* Computes the result that some rows wait for, and hands it out. */
 static void serve(row *rows, waiting state, lanes_room *room) {
   row *served[LANES];
   int count = 0;

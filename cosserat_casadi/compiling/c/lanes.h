@@ -37,7 +37,7 @@ IN_LIBRARY void permute_in_lanes(int size, const int *pivots, double *right_side
 /* Solves with such factors, in place; the right sides are in the order of the pivots. */
 IN_LIBRARY void substitute_in_lanes(int size, const double *factors, double *right_sides);
 
-/* What the updates of a Jacobian in lanes are made of: of each lane how many steps, these one after the other, and the
+/* Steps of the updates of a Jacobian in lanes: for each lane their number, the steps one after the other, and the
    squares of their lengths. */
 typedef struct {
   int counts[LANES ? LANES : 1];
@@ -52,7 +52,7 @@ IN_LIBRARY void complete_steps_in_lanes(int size, const updates_in_lanes *update
 /* Adds an array of lanes to another. */
 IN_LIBRARY void add_in_lanes(int size, const double *added, double *sums);
 
-/* Sums of squares: of each lane a number. */
+/* Sums of squares, a number for each lane. */
 IN_LIBRARY void squares_in_lanes(int size, const double *in_lanes, double *squares);
 
 /* Arrays of each row into an array of lanes, and out of it. */

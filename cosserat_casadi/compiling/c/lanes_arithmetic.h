@@ -1,4 +1,4 @@
-/* What a source of kernels begins with that is compiled for lanes: `lanes` in place of casadi_real, and the functions of
+/* Beginning of a source of kernels that is compiled for lanes: `lanes` in place of casadi_real, and the functions of
    the mathematical library for them. */
 #include <math.h>
 
@@ -55,11 +55,11 @@ IN_PLACE lanes lanes_chosen(lane_marks marks, lanes x, lanes y) {
   return (lanes)(((lane_marks)x & marks) | ((lane_marks)y & ~marks));
 }
 
-/* As fmax and fmin do, a number beside what is none. */
+/* Like fmax and fmin, these return the number if the other argument is not a number. */
 IN_PLACE lanes lanes_fmax(lanes x, lanes y) { return lanes_chosen((lane_marks)(x > y) | (lane_marks)(y != y), x, y); }
 IN_PLACE lanes lanes_fmin(lanes x, lanes y) { return lanes_chosen((lane_marks)(x < y) | (lane_marks)(y != y), x, y); }
 
-/* What C writes with operators: 1 where it holds, else 0. */
+/* Operators of C: 1 if the comparison holds, else 0. */
 #define HOLDS(marks) lanes_where((lane_marks)(marks), IN_ALL(1.0))
 IN_PLACE lanes lanes_less(lanes x, lanes y) { return HOLDS(x < y); }
 IN_PLACE lanes lanes_at_most(lanes x, lanes y) { return HOLDS(x <= y); }

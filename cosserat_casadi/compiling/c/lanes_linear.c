@@ -1,4 +1,4 @@
-/* Linear algebra of LANES rows at once, each with pivots of its own: as linear_dense.c. */
+/* Linear algebra of LANES rows at once, each with its own pivots, like linear_dense.c. */
 
 typedef long long lane_mask __attribute__((vector_size(8 * LANES), may_alias));
 
@@ -9,7 +9,7 @@ typedef long long lane_mask __attribute__((vector_size(8 * LANES), may_alias));
 #define PICKED(one, other, a, b, c, d) __builtin_shuffle(one, other, (lane_mask){a, b, c, d})
 #endif
 
-/* A matrix of four by four, of which row after row is given, into columns. */
+/* Transposes a matrix of four by four. */
 #define TRANSPOSED(row_0, row_1, row_2, row_3, column_0, column_1, column_2, column_3) \
   {                                                                                    \
     const lanes even = PICKED(row_0, row_1, 0, 4, 2, 6);                               \
@@ -60,7 +60,7 @@ void scatter_lanes(const double *in_lanes, int count, double *const *targets) {
   }
 }
 
-/* The numbers of one where the mask says so, else of the other. */
+/* The numbers of the first array in masked lanes, else those of the second. */
 static lanes chosen(lane_mask mask, lanes one, lanes other) {
   return (lanes)((mask & (lane_mask)one) | (~mask & (lane_mask)other));
 }
@@ -168,8 +168,8 @@ void add_in_lanes(int size, const double *added, double *sums) {
   for (int i = 0; i < size; i++) b[i] += a[i];
 }
 
-/* Gathers of each lane the step with its number of these, with the square of its length; of a lane that has no such step
-   that of another. */
+/* Gathers the step with a number of each lane, and the square of its length; a lane without this step gets that of
+   another lane. */
 static lanes gather_steps(int size, const updates_in_lanes *updates, const int *numbers, int other, double *gathered) {
   const double *sources[LANES];
   lanes squares;

@@ -24,7 +24,7 @@ static const real CLOSE = 1e-6;          /* residual of the equilibrium, and las
 static const real SAME = 1e-3;           /* distance within which the solver's equilibrium is the one approached */
 static const real ROUNDING = 1e-10;      /* predicted decrease, beside one plus the cost, that ends the search */
 
-/* What is known beforehand of the unknowns: bounds, expected values with one over their deviations, typical sizes. */
+/* Prior knowledge of the unknowns: bounds, expected values with one over their deviations, typical sizes. */
 typedef struct {
   const real *lower, *upper, *mean, *weight, *size;
 } knowledge;
@@ -45,11 +45,11 @@ typedef struct {
   int held[K];
 } misfit_memory;
 
-/* Half the sum of squares of differences in deviations, those from the expected values among them. */
+/* Cost: half the sum of squares of all differences in deviations, also from the expected values. */
 static real cost_of(const real *difference, const real *inputs, const measured_row *row, const knowledge *known) {
   real sum = 0;
   for (int i = 0; i < ROWS; i++) {
-    /* What was not measured has no weight, and may be anything. */
+    /* A number that was not measured has no weight, and may be anything. */
     if (row->weights[i] != 0) sum += difference[i] * row->weights[i] * difference[i] * row->weights[i];
   }
   for (int j = 0; j < K; j++) {
@@ -65,7 +65,7 @@ static real cost_at(const real *x, const real *inputs, const measured_row *row, 
   return cost_of(room->difference, inputs, row, known);
 }
 
-/* Information of data and prior, and gradient of the cost, at room->x moved on by room->shift. */
+/* Information of data and prior, and gradient of the cost, at room->x + room->shift. */
 static void linearise_misfit(const measured_row *row, const knowledge *known, misfit_memory *room) {
   measured_at(room->x, room->inputs, row->at, row->measured, room->difference, room->by_x, room->by_unknown,
               &room->solver);
@@ -99,7 +99,7 @@ static void linearise_misfit(const measured_row *row, const knowledge *known, mi
   }
 }
 
-/* Unknowns at a bound that the cost would leave stay there, and so do those whose bounds leave them one value. */
+/* Unknowns stay at a bound beyond which the cost falls, and so do unknowns with equal bounds. */
 static void hold(const knowledge *known, misfit_memory *room) {
   for (int j = 0; j < K; j++) {
     const real value = room->inputs[UNKNOWN[j]];
@@ -108,8 +108,8 @@ static void hold(const knowledge *known, misfit_memory *room) {
   }
 }
 
-/* The damped step, in room->step, by Cholesky's factors of the information in typical sizes; returns the decrease of the
-   cost that the linear model predicts, negative where there are no factors. */
+/* Computes the damped step room->step by Cholesky's factors of the information in typical sizes. Returns the decrease
+   of the cost that the linear model predicts, negative without factors. */
 static real step_of(real damping, const knowledge *known, misfit_memory *room) {
   real *a = room->factor, *step = room->step;
   real largest = 0;
@@ -122,7 +122,7 @@ static real step_of(real damping, const knowledge *known, misfit_memory *room) {
       const int apart = room->held[i] || room->held[j];
       a[j * K + i] = apart ? 0 : room->information[j * K + i] * known->size[i] * known->size[j];
     }
-    /* A direction that no datum sees is not moved along. */
+    /* No step goes along a direction that no datum sees. */
     const real square = a[j * K + j] > 1e-12 * largest ? a[j * K + j] : 1e-12 * largest;
     a[j * K + j] += damping * square;
     if (a[j * K + j] == 0) a[j * K + j] = 1;
@@ -158,7 +158,7 @@ static real within(real value, int j, const knowledge *known) {
   return value > known->upper[j] ? known->upper[j] : value;
 }
 
-/* The equilibrium a step away, in room->trial_x, and its cost; INFINITY where there is none. */
+/* Solves for the equilibrium a step away, room->trial_x. Returns its cost, INFINITY without an equilibrium. */
 static real try_step(const measured_row *row, const knowledge *known, misfit_memory *room) {
   memcpy(room->trial_inputs, room->inputs, sizeof room->inputs);
   memcpy(room->trial_x, room->x, sizeof room->x);
@@ -173,8 +173,8 @@ static real try_step(const measured_row *row, const knowledge *known, misfit_mem
   return cost_at(room->trial_x, room->trial_inputs, row, known, room);
 }
 
-/* Derivatives of the unknowns of the rod with the unknown inputs, in room->d_x, where its equations stay as they are; zero
-   where the Jacobian is singular. Leaves its factors in the solver's workspace. */
+/* Derivatives room->d_x of the unknowns of the rod by the unknown inputs at constant residual. Returns zero if the
+   Jacobian is singular. Leaves its factors in the solver's workspace. */
 static int move_with_unknowns(misfit_memory *room) {
   workspace *work = &room->solver;
   updated_jacobian *jacobian = work->updated_jacobians;
@@ -191,9 +191,9 @@ static int move_with_unknowns(misfit_memory *room) {
   return all_finite(room->d_x, N * K);
 }
 
-/* Goes near the least misfit with the rod's unknowns free, its equations linearised and met at the end alone: lifted, the
-   problem is far less bent (J. Albersmeyer, M. Diehl, SIAM J. Optim. 20, 2010, 1655-1684). Zero, and room->x of no use,
-   where it strays; else an equilibrium. */
+/* Goes near the least misfit with the rod's unknowns free, its equations linearised and met at the end alone: lifted,
+   the problem is far less bent (J. Albersmeyer, M. Diehl, SIAM J. Optim. 20, 2010, 1655-1684). Returns zero if it
+   strays, and room->x has no use then; else room->x is an equilibrium. */
 static int approach(const measured_row *row, const knowledge *known, misfit_memory *room) {
   const loads at = full_load(room->inputs);
   memset(room->x, 0, sizeof room->x);
@@ -240,12 +240,12 @@ static int is_inside(const misfit_memory *room, const knowledge *known) {
   return 1;
 }
 
-/* The row with the least misfit, in room; how the search ended. */
+/* Finds the least misfit of a row, in room. Returns how the search ended. */
 static int search(const measured_row *row, const knowledge *known, misfit_memory *room, real *cost, int *iterations) {
   real damping = FIRST_DAMPING;
   memcpy(room->trial_inputs, room->inputs, sizeof room->inputs);
   if (!approach(row, known, room)) {
-    /* From the unloaded rod, in equilibrium all the way. */
+    /* Searches from the unloaded rod through equilibria. */
     memcpy(room->inputs, room->trial_inputs, sizeof room->inputs);
     memset(room->x, 0, sizeof room->x);
     if (solver_solve(room->inputs, room->x, &room->solver, 0) != SOLVER_CONVERGED) return ROW_WITHOUT_EQUILIBRIUM;

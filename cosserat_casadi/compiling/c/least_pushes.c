@@ -1,14 +1,14 @@
-/* One-sided constraints: which of them push, and how hard, so that none pulls and none is passed. Exported steps and
+/* Forces of one-sided constraints that only push, and let none of the constraints be passed. Exported steps and
    simulated motions both include it. */
 
-/* Share of a constraint's compliance that active ones must leave, below which it depends on them. A rate that the forces
-   close to less than the same share of their contribution counts as rounding. */
+/* A constraint depends on active ones if they leave less than this share of its compliance. A rate that the forces
+   close to less than this share of their contribution counts as rounding. */
 static const real DEPENDENT = (real)1e-9;
 
-/* Fall of an active force, for a unit of a dependent one in their scales, below which it is rounding. */
+/* Fall of an active force by a unit of a dependent force, in their scales, that counts as rounding. */
 static const real FALLS = (real)1e-4;
 
-/* Solves with the rows and columns of W of some constraints, for values of theirs, in place. */
+/* Solves with the rows and columns of W of some constraints, in place. */
 static int solve_active(const real *w, int count, const int *active, int active_count, real *values, workspace *work) {
   real *a = work->small_matrix;
   for (int j = 0; j < active_count; j++) {
@@ -71,7 +71,7 @@ static int least_pushes(const real *compliance, const real *rates, int count, re
       for (int k = 0; k < count; k++) forces[k] *= scale[k];
       return 1;
     }
-    /* How active forces change with its own, so that their gaps do not. */
+    /* Change of the active forces by a unit of its force at constant gaps. */
     for (int i = 0; i < active_count; i++) values[i] = -w[fastest * count + active[i]];
     if (!solve_active(w, count, active, active_count, values, work)) return 0;
     real left = w[fastest * count + fastest];

@@ -1,6 +1,6 @@
 /* The equations of motion at an instant: inverse dynamics, their linearisation, and a start at rest. */
 
-/* An instant from its vectors; those that are null are zero. */
+/* Makes an instant from its vectors; null stands for zeros. */
 static void set_instant(const real *x, const real *v, const real *a, const real *inputs, const real *inputs_rate,
                         const real *inputs_acceleration, instant *at) {
   const real *state[] = {x, v, a};
@@ -46,7 +46,7 @@ SOLVER_DEVICE void solver_linearise(const solver_state *state, const real *input
   }
 }
 
-/* Marks the rows in which nothing but positions stands, those of supports, joints and cables. */
+/* Marks the rows that depend on positions only: rows of supports, joints and cables. */
 static void mark_constraints(const real *matrices, int *is_constraint) {
   for (int i = 0; i < N; i++) is_constraint[i] = 1;
   for (int k = 0; k < STAGE_ENTRIES; k++) {
@@ -55,8 +55,8 @@ static void mark_constraints(const real *matrices, int *is_constraint) {
   }
 }
 
-/* Accelerations and multipliers at rest: balance, with constraints differentiated twice; there is no velocity in them.
-   Where the masses do not say what they are, they stay: they are but the first guess of a step. */
+/* Accelerations and multipliers at rest by the balance, with constraints differentiated twice at zero velocity. If
+   masses do not determine them they stay: they are only the first guess of a step. */
 static void accelerate(const int *is_constraint, solver_state *state, const real *residual, workspace *work) {
   const stage_factors factors = {work->stage_rows, work->stage_columns, work->stage_matrix, work->stage_pivots,
                                  &work->stages_as_a_whole};

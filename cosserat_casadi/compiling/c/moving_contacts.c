@@ -17,7 +17,7 @@ typedef double real;
 
 #include "python_kernels.c"
 
-/* Room of constraints of which some push. */
+/* Workspace of one-sided constraints. */
 typedef struct {
   real *scaled_compliance;
   real *scales;
@@ -30,7 +30,7 @@ typedef struct {
 
 #include "facings.c"
 
-/* A contact; where it slides the place is that next to which it is looked for. */
+/* A contact. For a sliding one, the search for its place begins at place. */
 typedef struct {
   const facing *facing;
   int slides;
@@ -52,13 +52,13 @@ static int all_finite(const real *a, int count) {
 
 /* ---- Gaps of a pair, at positions of its points ---- */
 
-/* The element that a section is looked at in, or that of the section itself where it is farther beyond that one's ends. */
+/* The given element, or the element of the section if the section is too far beyond the given one. */
 static int element_near(const facing *own, real place, int element) {
   const int is_near = own->ends[element] - BEYOND <= place && place <= own->ends[element + 1] + BEYOND;
   return is_near ? element : element_of(own, place);
 }
 
-/* Newton's method for a place where the slope is zero; not a number where it leads nowhere. */
+/* Newton's method for a place with zero slope; not a number if it fails. */
 static real stationary(const facing *own, real near, int element) {
   real place = near;
   for (int k = 0; k < MOST_PLACINGS; k++) {
@@ -69,13 +69,13 @@ static real stationary(const facing *own, real near, int element) {
     const real change = -gap.slope / gap.bend;
     place += change;
     if (!(-BEYOND <= place && place <= 1 + BEYOND)) return NAN;
-    /* Beyond its element the gap is that of the next one. */
+    /* Beyond its element the gap follows the next one. */
     if (ABSOLUTE(change) <= PLACED && element_near(own, place, element) == number) break;
   }
   return place;
 }
 
-/* Number of the section, of those looked at first, that is least in the valley of a place. */
+/* Number of the lowest section, among those looked at first, in the valley of a place. */
 static int downhill(const facing *own, const real *gaps, int count, real near) {
   int look = 0;
   for (int i = 1; i < count; i++) {
@@ -86,14 +86,13 @@ static int downhill(const facing *own, const real *gaps, int count, real near) {
   return look;
 }
 
-/* Place next to another where the gap is least, by the polynomials of an element; not beyond the ends by more than a
-   little. */
+/* Place of the least gap next to another place, by the polynomials of an element; at most a little beyond the ends. */
 static real place_near(const facing *own, const real *nodes, real near, int element) {
   const real first = own->ends[element];
   const real last = own->ends[element + 1];
   real place = stationary(own, near, element);
   if (ABSOLUTE(place - near) <= FAR) return place;
-  /* Down the gaps from section to section no other minimum can be met. */
+  /* The search goes down from section to section, so that it meets no other minimum. */
   const int count = gaps_along(own, nodes, own->gaps_along, 0);
   const real beside = place_of_look(own, downhill(own, own->gaps_along, count, near));
   if (first <= beside && beside <= last) {
@@ -113,7 +112,7 @@ void gap_at(const facing *own, const real *nodes, real place, int element, secti
   weigh_nodes(own, gap);
 }
 
-/* The place next to another where the gap is least. */
+/* The place of the least gap next to another place. */
 real gap_place(const facing *own, const real *nodes, real near, int element) {
   if (own->is_body) return near;
   fit_nodes(own, nodes, 0);
@@ -130,8 +129,8 @@ void laid_gaps(const facing *own, const real *nodes, real *gaps) {
   }
 }
 
-/* Places of the sections whose gaps are the least about them, and not above a bound, base to tip, and these gaps; returns
-   their number. There is room for as many as are looked at. */
+/* Writes places and values of local minima of the gap up to a bound, from base to tip. Returns their number, at most
+   that of the sections looked at. */
 int gap_valleys(const facing *own, const real *nodes, real below, real *places, real *gaps) {
   section_gap lowest;
   int look = 0, count = 0;
@@ -182,12 +181,12 @@ void lowest_gap(const facing *own, const real *nodes, int all, const real *but, 
     if (gaps[i] < least && is_lowest(own, gaps, count, i, all, left_out, but_count, ends, end_count)) least = gaps[i];
   }
   for (int i = 0; i < count; i++) {
-    /* A valley between two sections may be lower than another one at a section, such as an end, whose gap is less. */
+    /* A valley between two sections may be lower than a section, such as an end, with a smaller gap. */
     const real deeper = step_down(gaps, count - 1, i);
     if (gaps[i] - deeper > least || !is_lowest(own, gaps, count, i, all, left_out, but_count, ends, end_count)) continue;
     gap.place = place_of_look(own, i);
     gap.value = gaps[i];
-    /* Far from zero no one asks how much lower it is beside a section. */
+    /* Far from zero the exact minimum beside a section does not matter. */
     if (all || !(gaps[i] > OFF * deeper)) look_lowest_by(own, i, &gap, 0);
     if (!(gap.value < *lowest)) continue;
     *lowest = gap.value;
@@ -200,7 +199,7 @@ void lowest_gap(const facing *own, const real *nodes, int all, const real *but, 
 /* Has the positions of points in memory, as the result of their function. */
 void known_positions(moving_points *points, const real *x, const real *inputs) { positions_at(points, x, inputs); }
 
-/* Gaps of contacts where they are. */
+/* Gaps of contacts at their places. */
 void touched_gaps(const touch *touches, int count, const real *x, const real *inputs, section_gap *gaps) {
   for (int k = 0; k < count; k++) {
     const facing *own = touches[k].facing;
@@ -214,7 +213,7 @@ void touched_gaps(const touch *touches, int count, const real *x, const real *in
   }
 }
 
-/* Takes forces of contacts from equations of motion, and writes how far gaps are open behind them. */
+/* Subtracts the forces of contacts from equations of motion, and appends the open gaps. */
 void push_touches(const touch *touches, int count, int unknowns, const real *x, const real *inputs, const real *forces,
                   real *rows, real *open) {
   section_gap gap;

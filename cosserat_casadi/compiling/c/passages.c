@@ -8,11 +8,10 @@
 
 #include "interpolation.c"
 
-/* Width of the stretches between two looks at least, relative to the depth that is admitted: they miss no way through the
-   middle. */
+/* Least width of a stretch between two looks, relative to the admitted depth: looks miss no way through the middle. */
 static const real FINEST = (real)0.25;
 
-/* Longest step along a rod, in which a chord is about as long as the rod. */
+/* Longest step along a rod, over which a chord is about as long as the arc. */
 static const real LONGEST_STRETCH = (real)0.125;
 
 enum {
@@ -26,7 +25,7 @@ typedef struct {
   const real *inputs[2];
 } step_ends;
 
-/* Where places are looked at in a part of a step. */
+/* Shares of a part of a step at which places are computed. */
 enum { AT_START, IN_MIDDLE, AT_END };
 
 static real least_of(real a, real b) { return a < b ? a : b; }
@@ -39,7 +38,7 @@ static real distance_of(const real *a, const real *b) {
   return SQUARE_ROOT(sum);
 }
 
-/* How far places are off the straight line in the middle of a part; zero where that is no more than is overlooked. */
+/* Distance of places from the straight line in the middle of a part; zero if it is negligible. */
 static real bend_of(const workspace *work, int first, int count, real overlooked) {
   real bend = 0;
   for (int i = 3 * first; i < 3 * (first + count); i += 3) {
@@ -51,8 +50,8 @@ static real bend_of(const workspace *work, int first, int count, real overlooked
 }
 
 #if BARRIERS
-/* How much nearer than it is a section may come on its way to what counts as deep, m; negative where it is deep, or where
-   this is no number. */
+/* Distance that a section may still approach before it counts as deep, m; negative if it is deep, or if this is not a
+   number. */
 static real clear_by(const barrier *own, const real *start, const real *end, real radius, workspace *work) {
   const real admitted = SIZES(work)[own->sizes + ADMITTED];
   const real way = distance_of(start, end);
@@ -62,7 +61,7 @@ static real clear_by(const barrier *own, const real *start, const real *end, rea
     for (int i = 0; i < 3; i++) position[i] = start[i] + share * (end[i] - start[i]);
     const real clear = own->distance(position, work) - radius + admitted;
     if (!(clear >= 0)) return -1;
-    /* Between two looks the way is as clear as from both of its ends. */
+    /* Between two looks the room follows from the room at both ends. */
     const real between = most_of((before + clear - gone) / 2, 0);
     least = share > 0 ? least_of(least, between) : clear;
     if (share == 1 || way == 0) return least;
@@ -98,7 +97,8 @@ static real radius_of(const barrier *own, real X, const workspace *work) {
   return radii[part] + (place - (real)part) * (radii[part + 1] - radii[part]);
 }
 
-/* Whether a section of a rod, or a ball, is deep inside an obstacle on its way, or so near that its bend tells. */
+/* Whether a section of a rod, or a ball, is deep inside an obstacle on its way, or so near that the bend of the way
+   decides. */
 static int goes_through(const barrier *own, real bend, workspace *work) {
   const real *before = work->places[AT_START];
   const real *after = work->places[AT_END];
@@ -112,7 +112,7 @@ static int goes_through(const barrier *own, real bend, workspace *work) {
     if (clear < 0) return 1;
     if (!own->rod || X == 1) return 0;
     const real reach = most_of(clear, FINEST * sizes[ADMITTED]);
-    /* A little less, so that rounding does not halve the step. */
+    /* The bound is a little smaller, so that rounding does not halve the step. */
     real step = least_of((real)0.9 * reach / own->length, LONGEST_STRETCH);
     real next;
     for (;;) {
@@ -130,7 +130,7 @@ static int goes_through(const barrier *own, real bend, workspace *work) {
 #endif
 
 #if ROD_PAIRS
-/* How near one section comes to another while both move. */
+/* Least distance of two sections while both move. */
 static real nearest_of(const real *first, const real *second, const real *first_end, const real *second_end) {
   real square = 0, product = 0, apart[3], way[3];
   for (int i = 0; i < 3; i++) {
@@ -152,7 +152,8 @@ static real longest_between(const real *places, int count) {
   return longest;
 }
 
-/* Whether the axes of two rods come nearer each other than half their thickness, or so near that their bend tells. */
+/* Whether the axes of two rods come nearer to each other than half their thickness, or so near that the bend of the way
+   decides. */
 static int pass_each_other(const rod_pair *own, real bend, const workspace *work) {
   const real *before = work->places[AT_START];
   const real *after = work->places[AT_END];
@@ -164,7 +165,8 @@ static int pass_each_other(const rod_pair *own, real bend, const workspace *work
   const real spacing = most_of(longest_between(before + others, count), longest_between(after + others, count));
   const real own_spacing =
       most_of(longest_between(before + own_first, own_count), longest_between(after + own_first, own_count));
-  /* Where axes cross, sections that are looked at are so near each other: more than half the thickness of long rods. */
+  /* Crossing axes have sections among those looked at within this distance: more than half the thickness for long
+     rods. */
   const real met = SQUARE_ROOT(spacing * spacing + own_spacing * own_spacing) * EVERY / 2;
   const real allowed = most_of(sizes[NEAREST], met) + bend;
   for (int i = 0; i < own_count; i += EVERY) {
@@ -187,7 +189,7 @@ static int pass_each_other(const rod_pair *own, real bend, const workspace *work
 }
 #endif
 
-/* Whether a quaternion among the inputs changes to one that is nearer with the other sign, which is the same rotation. */
+/* Whether a quaternion among the inputs changes to one that is nearer with the other sign. */
 static int turns_farther(const real *from, const real *to, int first) {
   real product = 0;
   for (int i = first; i < first + 4; i++) product += from[i] * to[i];
@@ -208,7 +210,7 @@ static void find_places(const step_ends *step, real share, int where, workspace 
   places_at(x, inputs, work->places[where], work);
 }
 
-/* Whether a part of a step leads through something thin, as far as its bend lets see: then *bends. */
+/* Whether a part of a step leads through something thin; *bends tells whether its bend leaves that open. */
 static int part_leads_through(workspace *work, int *bends) {
 #if BARRIERS
   for (int k = 0; k < BARRIERS; k++) {
@@ -233,7 +235,7 @@ static int part_leads_through(workspace *work, int *bends) {
   return 0;
 }
 
-/* Whether a step leads through something thin; its end tells the sizes. */
+/* Whether a step leads through something thin; sizes are those at its end. */
 static int leads_through(const step_ends *step, workspace *work) {
   const size_t all = sizeof work->places[0];
   real begun = 0, share = 1;

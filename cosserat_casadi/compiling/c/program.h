@@ -1,4 +1,4 @@
-/* What programs move numbers with. */
+/* Macros and functions by which programs move numbers. */
 #ifndef COSSERAT_PROGRAM_H
 #define COSSERAT_PROGRAM_H
 
@@ -10,7 +10,7 @@
 #define PROGRAM_MAYBE_UNUSED
 #endif
 
-/* An argument that is not there stands for zeros. */
+/* A null argument stands for zeros. */
 static PROGRAM_MAYBE_UNUSED void program_read(casadi_real *to, const casadi_real *from, int count) {
   if (from) {
     memcpy(to, from, (size_t)count * sizeof *to);

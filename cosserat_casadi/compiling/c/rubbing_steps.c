@@ -177,8 +177,8 @@ static const int FEELS_ACCELERATION[INPUTS + 1] = {0};
 
 /* ---- Elastic stops and cables ---- */
 
-/* The equations of the model round the corner between a gap and a push so little that Newton's method, with one Jacobian for
-   a step, does not pass it. Here each pair is closed or open in all of a stretch, as it is at the end. */
+/* The equations of the model hardly round the corner between a gap and a push, so that Newton's method with one
+   Jacobian for a step does not pass it. Here each pair is closed or open in all of a stretch, as at its end. */
 
 /* Finds which pairs are closed at a state; returns whether that is new. */
 static int find_closed(const real *x, const real *inputs) {
@@ -324,7 +324,7 @@ static void carry(carrying *row, real *own, int count) {
   row->next += count;
 }
 
-/* What is read is brought into its range: numbers of a file lead out of no array. */
+/* Numbers from a file are clipped to their range, so that no index leaves an array. */
 static void carry_whole(carrying *row, int *own, int most) {
   real number = (real)*own;
   carry(row, &number, 1);
@@ -333,7 +333,7 @@ static void carry_whole(carrying *row, int *own, int most) {
 
 /* ---- For Python ---- */
 
-/* Carries the memory between two motions, into CARRIED numbers or from them, with which steps go on to the last bit. */
+/* Writes the memory of a motion into CARRIED numbers, or reads it from them, so that steps go on to the last bit. */
 void rubbing_carry(const model *of, solver_step_memory *memory, real *numbers, int reads) {
   carrying row = {numbers, reads};
   carry(&row, memory->rows, N);

@@ -74,8 +74,8 @@ static void reflect_columns(real *matrix, const real *v, int first, real factor,
   }
 }
 
-/* Whether the equation of a held unknown gives it a finite stiffness, or none: a cable that is slack, or that stretches, or
-   an elastic stop. */
+/* Whether the equation of a held unknown gives it a finite stiffness or none, as for a slack or elastic cable or an
+   elastic stop. */
 static int yields(const memory *room, int row) {
   const real own = ABSOLUTE(room->jacobian[row * N + row]);
   real gradient = 0, pull = 0;
@@ -87,7 +87,7 @@ static int yields(const memory *room, int row) {
   return own > 0 && SQUARE_ROOT(gradient) * SQUARE_ROOT(pull) <= RIGID * own;
 }
 
-/* Symmetric part of the scaled Jacobian by the free unknowns, at the point of room->jacobian; unknowns that yield follow. */
+/* Symmetric part of the scaled Jacobian in room->jacobian by the free unknowns; yielding unknowns are condensed out. */
 static void gather_hessian(memory *room) {
   for (int j = 0; j < FREE; j++) {
     for (int i = 0; i <= j; i++) {
@@ -125,7 +125,7 @@ static int gather_constraints(memory *room) {
   return count;
 }
 
-/* Moves the longest rest of a column from first on to the place of the first of them. */
+/* Swaps the column with the longest remainder, among columns from first on, to the place first. */
 static void choose_column(real *columns, int first, int count) {
   int best = first;
   real longest = -1;
@@ -143,8 +143,8 @@ static void choose_column(real *columns, int first, int count) {
   }
 }
 
-/* Turns the variations so that the constraints are about the first of them alone, by QR with column pivoting; returns how
-   many those are: the rank. The matrix of variations may be null. */
+/* Rotates the variations by QR with column pivoting so that the constraints depend on the first ones only. Returns
+   their number, the rank. The matrix of variations may be null. */
 static int eliminate_constraints(memory *room, real *vectors) {
   const int count = gather_constraints(room);
   real first_pivot = 0;
@@ -168,7 +168,7 @@ static int eliminate_constraints(memory *room, real *vectors) {
   return rank;
 }
 
-/* The rows and columns of the matrix from first on as a tridiagonal one: diagonal, and the entries beside it. */
+/* Makes the rows and columns of the matrix from first on tridiagonal: diagonal, and the entries beside it. */
 static void tridiagonalise(memory *room, int first, real *vectors) {
   real *v = room->reflector;
   for (int k = first; k < FREE; k++) {
@@ -182,7 +182,7 @@ static void tridiagonalise(memory *room, int first, real *vectors) {
   }
 }
 
-/* One implicit QR step on the rows and columns from low to high of a tridiagonal matrix. */
+/* One implicit QR step on rows and columns low to high of a tridiagonal matrix. */
 static void qr_step(real *diagonal, real *beside, int low, int high, real *vectors) {
   const real half = (diagonal[high - 1] - diagonal[high]) / 2;
   const real last = beside[high - 1];
@@ -212,7 +212,8 @@ static void qr_step(real *diagonal, real *beside, int low, int high, real *vecto
   }
 }
 
-/* Eigenvalues of the tridiagonal matrix from first on, in its diagonal and in no order; zero where they are not found. */
+/* Computes the eigenvalues of the tridiagonal matrix from first on into its diagonal, unordered. Returns zero if it
+   fails. */
 static int diagonalise(memory *room, int first, real *vectors) {
   real *diagonal = room->eigenvalues, *beside = room->beside_diagonal;
   real largest = 0;
@@ -249,7 +250,7 @@ static int spectrum(memory *room, real *vectors) {
   return diagonalise(room, first, vectors) ? first : -1;
 }
 
-/* What eigenvalues from first on mean; notes in room->neutral which are zero. */
+/* Verdict by the eigenvalues from first on; room->neutral receives the zero ones. */
 static void judge(memory *room, int first, verdict_info *info) {
   real largest = 1;
   info->smallest_eigenvalue = INFINITY;
@@ -268,15 +269,15 @@ static void judge(memory *room, int first, verdict_info *info) {
   info->verdict = info->negative ? UNSTABLE : info->zero ? NEUTRAL : STABLE;
 }
 
-/* How far apart two points are in the unknowns that vary. Multipliers turn along with a rod, and are large where it is held
-   tight: they do not count. */
+/* Distance of two points in the free unknowns. Multipliers do not count: they turn with a rod, and are large if it is
+   held tight. */
 static real distance_between(const real *one, const real *other, memory *room) {
   for (int i = 0; i < FREE; i++) room->image[i] = one[FREE_UNKNOWNS[i]] - other[FREE_UNKNOWNS[i]];
   return norm_of(room->image, FREE);
 }
 
-/* Whether an equilibrium alike lies a little way along a variation. Newton may fall back to where it came from, or on to
-   elsewhere: neither tells of this variation. */
+/* Whether an equivalent equilibrium lies a little way along a variation. Newton may return to the first one, or go
+   elsewhere: neither says anything about this variation. */
 static int is_alike_beside(const problem *at, const real *x, const real *variation, memory *room) {
   verdict_info found;
   real *beside = room->beside;
@@ -304,7 +305,7 @@ static status stability(const problem *at, const real *x, memory *room, verdict_
   if (first < 0) return NOT_FINITE;
   judge(room, first, info);
   if (info->verdict != NEUTRAL) return CONVERGED;
-  /* The same once more with the variations, which most equilibria need not. */
+  /* Only neutral equilibria need the variations: repeat with them. */
   const int again = spectrum(room, room->vectors);
   if (again < 0) return NOT_FINITE;
   judge(room, again, info);

@@ -10,7 +10,8 @@ static const newton_limits DAMPED_NEWTON = {
     .reuse_jacobian = 0,
 };
 
-/* What is left of a product with the inverse of the Jacobian: one rank-one update for each step and its follower. */
+/* Applies the updates to a product with the inverse of the Jacobian: one rank-one update for each step and the next
+   one. */
 static void apply_updates(const updated_jacobian *jacobian, real *result) {
   for (int j = 0; j + 1 < jacobian->count; j++) {
     const real share = dot(jacobian->steps[j], result) / jacobian->squares[j];
@@ -25,9 +26,9 @@ static void apply_inverse(const updated_jacobian *jacobian, const real *vector, 
   apply_updates(jacobian, result);
 }
 
-/* The quasi-Newton step at an iterate from minus the inverse times the residual there. The update is C. G. Broyden's
-   (Math. Comp. 19, 1965, 577-593); its inverse is applied from the steps alone: C. T. Kelley, Iterative Methods for Linear
-   and Nonlinear Equations, SIAM 1995, section 7.3. */
+/* Completes the quasi-Newton step at an iterate from minus the inverse times the residual. The update is C. G.
+   Broyden's (Math. Comp. 19, 1965, 577-593); its inverse is applied from the steps alone: C. T. Kelley, Iterative
+   Methods for Linear and Nonlinear Equations, SIAM 1995, section 7.3. */
 static void complete_step(const updated_jacobian *jacobian, real *step) {
   if (jacobian->count > 0) {
     const int last = jacobian->count - 1;
@@ -44,8 +45,8 @@ static real newton_step(const updated_jacobian *jacobian, const real *residual, 
   return dot(step, step);
 }
 
-/* Minus the inverse times any vector, at an iterate with this residual: the update that belongs to the last step needs
-   the step that would follow it. Zero where the result is not finite. */
+/* Minus the inverse times any vector, at an iterate with this residual, since the update of the last step needs the
+   step that would follow. Returns zero if the result is not finite. */
 static int response(const updated_jacobian *jacobian, const real *residual, const real *vector, real *result,
                     workspace *work) {
   apply_inverse(jacobian, vector, result, work);
@@ -57,12 +58,12 @@ static int response(const updated_jacobian *jacobian, const real *residual, cons
   return all_finite(result, N);
 }
 
-/* Whether a step of this length brings the residual down far enough. */
+/* Whether a step of this length reduces the residual enough. */
 static int serves(real length, real trial_norm, real norm) {
   return isfinite(trial_norm) && trial_norm <= (1 - SUFFICIENT_DECREASE * length) * norm;
 }
 
-/* Halves the step until the residual falls. Returns the length that served, or zero; moves x, residual and norm on. */
+/* Halves the step until the residual falls. Returns the accepted length, or zero; updates x, residual and norm. */
 static real line_search(const loads *at, const real *step, int max_halvings, real *x, real *residual, real *norm,
                         workspace *work) {
   real *trial = work->trial;
@@ -83,10 +84,10 @@ static real line_search(const loads *at, const real *step, int max_halvings, rea
   return 0;
 }
 
-/* Where the next step belongs: behind those that the updates are made of. */
+/* Place of the next step: behind the steps of the updates. */
 static real *place_of_step(updated_jacobian *jacobian) { return jacobian->steps[jacobian->count]; }
 
-/* Takes the step at that place, whose length has this square, into the updates. */
+/* Adds the step at that place to the updates; square is the square of its length. */
 static void append_step(updated_jacobian *jacobian, real square) {
   jacobian->squares[jacobian->count] = square;
   jacobian->count++;
@@ -106,7 +107,7 @@ static int newton_ends(newton_state *state, const newton_limits *limits, real no
   newton_result *result = &state->result;
   const real size = 1 + norm_of_x;
   result->residual_norm = state->norm / size;
-  /* Beside unknowns whose norm overflows any residual would be small. */
+  /* If the norm of the unknowns overflows, any residual would count as small. */
   if (!isfinite(state->norm) || !isfinite(size)) {
     result->status = SOLVER_NOT_FINITE;
     return 1;
@@ -122,8 +123,8 @@ static void expect_jacobian(newton_state *state, updated_jacobian *jacobian) {
   jacobian->count = 0;
 }
 
-/* What follows from a share of the step, zero where none served, that has left the residual with this norm; the whole
-   step has a length of this square. Returns zero where Newton ends. */
+/* Decides after a step: share is its accepted length, zero if none; norm is that of the residual, square the square of
+   the length of the whole step. Returns zero if Newton ends. */
 static int weigh_step(newton_state *state, const newton_limits *limits, real square, real share, real norm,
                       updated_jacobian *jacobian) {
   const real previous_norm = state->norm;
@@ -141,14 +142,14 @@ static int weigh_step(newton_state *state, const newton_limits *limits, real squ
     state->reuse_jacobian = 0;
     return 1;
   }
-  /* The step to come is about as much shorter than this one as the residual has fallen. */
+  /* The next step is about as much shorter than this one as the residual has fallen. */
   if (SQUARE_ROOT(square) * norm < limits->inexact * previous_norm) state->result.status = SOLVER_CONVERGED;
   append_step(jacobian, square);
   state->reuse_jacobian = norm <= REUSE_DECREASE * previous_norm && jacobian->count < MAX_REUSES;
   return 1;
 }
 
-/* Newton from x, with the residual there. Moves both on, and leaves the last Jacobian. */
+/* Newton's method from x, with the residual there. Updates both, and leaves the last Jacobian. */
 static newton_result newton(const loads *at, const newton_limits *limits, real *x, real *residual,
                             updated_jacobian *jacobian, workspace *work) {
   newton_state state = begin_newton(limits, residual);

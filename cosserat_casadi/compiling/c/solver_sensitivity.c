@@ -17,9 +17,9 @@ static void add_product(const real *d_pose_d_x, const real *d_x_d_inputs, real *
   }
 }
 
-/* Derivatives of the solution by the implicit function theorem; leaves the factorised Jacobian in
-   updated_jacobians[0]. Writes nothing unless it returns CONVERGED. Those by the inputs may be wanted where they are
-   computed, in the workspace; where none are wanted the Jacobian is all. */
+/* Derivatives of the solution by the implicit function theorem; leaves the factorised Jacobian in updated_jacobians[0].
+   Writes nothing unless it returns CONVERGED. d_x_d_inputs may be its place in the workspace. If no derivatives are
+   wanted, it computes only the Jacobian. */
 static solver_status derivatives(const real *inputs, const real *x, real *d_x_d_inputs, real *d_poses_d_inputs,
                                  workspace *work) {
   updated_jacobian *jacobian = work->updated_jacobians;

@@ -21,7 +21,7 @@ static real weighted_length(const real *change, int instants, const workspace *w
   return largest;
 }
 
-/* Changes of h v that belong to changes of h^2 a. */
+/* Changes of h v by changes of h^2 a. */
 static void velocity_changes(const real *corrections, real *changes, const workspace *work) {
   (void)work;
   for (int stage = 0; stage < STAGES; stage++) {
@@ -55,13 +55,13 @@ static void apply_step_updates(int count, real *corrections, const workspace *wo
     for (int i = 0; i < STAGED; i++) corrections[i] += share * work->taken[k + 1][i];
   }
   if (count > 0) {
-    /* The last update contains what it is applied for. */
+    /* The last update contains the correction that it is applied to. */
     const real share = 1 - inner_product(work->duals[count - 1], corrections, STAGED);
     for (int i = 0; i < STAGED; i++) corrections[i] /= share;
   }
 }
 
-/* Remembers a correction for the updates, with the changes of h v that belong to it, which are written over. */
+/* Stores a correction for the updates, with its changes of h v, which are overwritten. */
 static void take_correction(int count, const real *corrections, real *changes, workspace *work) {
   real *dual = work->duals[count];
   real square = 0;
@@ -86,7 +86,7 @@ static void take_correction(int count, const real *corrections, real *changes, w
 
 typedef enum { ITERATES, CONVERGES, DIVERGES } newton_course;
 
-/* How the iteration goes on after a correction of this length; see stage_newton.py. */
+/* Decides how the iteration goes on after a correction of this length; see stage_newton.py. */
 static newton_course course_of(real length, real longest, real contraction, real allowed, real *left) {
   const real expected = larger(contraction, LEAST_CONTRACTION);
   *left = contraction > 0 && contraction < 1 ? length * expected / (1 - expected) : length;
@@ -96,8 +96,9 @@ static newton_course course_of(real length, real longest, real contraction, real
   return ITERATES;
 }
 
-/* Newton's method from a guess of the unknowns of the stages, which it moves on, until no more than the displacement over
-   the length that is allowed is left, or after so many iterations. Gives the ratio of the last two corrections, 0 for one. */
+/* Newton's method from a guess of the unknowns of the stages, which it updates. It ends when the remaining displacement
+   over the length is below the bound, or after so many iterations. Gives the ratio of the last two corrections, 0 after
+   one. */
 static solver_motion_status solve_stages(const step_start *start, const stage_factors *factors, real allowed, int most,
                                          real *unknowns, real *contraction, workspace *work, solver_step_info *info) {
   const real to_acceleration = 1 / (start->size * start->size);
@@ -120,7 +121,7 @@ static solver_motion_status solve_stages(const step_start *start, const stage_fa
         unknowns[stage * N + i] += corrections[stage * N + i] * (IS_SHAPE[i] ? to_acceleration : 1);
       }
     }
-    /* At first nothing is foretold. */
+    /* The first correction allows no prediction. */
     if (count > 0) *contraction = length / length_before;
     const newton_course course = course_of(length, longest, *contraction, allowed, &info->error_left);
     if (course == CONVERGES) return SOLVER_MOTION_DONE;

@@ -1,5 +1,4 @@
-/* A step of a motion by Radau IIA with two stages, and what is solved for it. See the library's header for what each
-   public function promises.
+/* A step of a motion by Radau IIA with two stages. See the library's header for what each public function promises.
 
    cosserat_casadi/numerics/step_matrices.py holds the linear system in Python, stage_newton.c Newton's method. The unknowns
    of a stage are the accelerations of coordinates, and the values of multipliers and tensions. */
@@ -32,7 +31,7 @@ static void input_matrices_at(const instant *at, real *matrices, workspace *work
   evaluate_motion(MOTION_INPUT_PARTS, MOTION_INPUT_PART_COUNT, at, matrices, work);
 }
 
-/* What a step begins with. */
+/* Start of a step. */
 typedef struct {
   const real *x;
   const real *v;
@@ -42,7 +41,7 @@ typedef struct {
   real size;                       /* s */
 } step_start;
 
-/* The inputs and their rates so many seconds into the step. */
+/* The inputs and their rates at a time after the start of the step, s. */
 static void inputs_after(const step_start *start, real time, real *inputs, real *rates) {
   for (int i = 0; i < INPUTS; i++) {
     const real rate = start->inputs_rate ? start->inputs_rate[i] : 0;
@@ -60,7 +59,7 @@ static void inputs_of(const step_start *start, real share, instant *at) {
   }
 }
 
-/* The polynomial of the step after a share of it, from its values and its integrals there. */
+/* Evaluates the polynomial of the step after a share of it, from its values and its integrals there. */
 static void motion_in(const step_start *start, real share, const real *values, const real *integrals,
                       const real *double_integrals, const real *unknowns, instant *at) {
   const real h = start->size;
@@ -129,7 +128,7 @@ static void corrections_of(const stage_factors *factors, const real *residuals, 
     real whole = solution[i];
     real imaginary = solution[N + i];
     if (IS_SHAPE[i]) {
-      /* A change of position is so many times one of h^2 a. */
+      /* Factor from a change of h^2 a to a change of position. */
       whole = SHARE[0] * solution[i] - SHARE[1] * solution[N + i];
       imaginary = SHARE[0] * solution[N + i] + SHARE[1] * solution[i];
     }
@@ -165,7 +164,7 @@ static stage_factors kept_factors(solver_step_memory *memory) {
   return kept;
 }
 
-/* First iterate: the polynomial of the step before, so many times as long as this one, or a constant acceleration. */
+/* First iterate: the polynomial of the last step, which was so many times as long, or a constant acceleration. */
 static void guess_stages(const real *before, real ratio, const solver_state *state, real *unknowns) {
   for (int stage = 0; stage < STAGES; stage++) {
     const real share = 1 + STAGE_NODES[stage] * ratio;
@@ -180,7 +179,7 @@ static void guess_stages(const real *before, real ratio, const solver_state *sta
   }
 }
 
-/* A Jacobian in the middle of the step as the guess has it: there it is nearest to those of both stages. */
+/* Computes the Jacobian in the middle of the step by the guess, which is nearest to the Jacobians of both stages. */
 static solver_motion_status renew_jacobian(const step_start *start, const real *unknowns, solver_step_memory *memory,
                                            workspace *work, solver_step_info *info) {
   const stage_factors factors = kept_factors(memory);
@@ -197,19 +196,19 @@ static solver_motion_status renew_jacobian(const step_start *start, const real *
   return SOLVER_MOTION_DONE;
 }
 
-/* Whether a Jacobian serves the next step too: few iterations are left to save, or hardly more are needed than it took
-   when it was new. */
+/* Whether the next step keeps a Jacobian: a new one would save few iterations, or iterations are hardly more than when
+   it was new. */
 static int serves_on(const solver_step_memory *memory, int iterations) {
   return iterations <= FEW_ITERATIONS || iterations <= memory->first_iterations + 1;
 }
 
 /* Solves one step from a guess in unknowns, with the kept Jacobian if there is one for its size, else with a new one.
-   Where it is not solved with a kept one, it is tried again with a new one. */
+   If the kept one fails, it tries a new one. */
 static solver_motion_status solve_step(const step_start *start, const solver_step_options *options, real *unknowns,
                                        solver_step_memory *memory, workspace *work, solver_step_info *info) {
   const stage_factors factors = kept_factors(memory);
   const int kept = memory->jacobian_size == start->size;
-  /* Positions are rounded at the length of a rod, however little the rod is bent. */
+  /* Positions have the rounding error of the length of a rod, however little the rod bends. */
   const real rounding = STAGE_ROUNDING * larger(1, weighted_length(start->x, 1, work));
   const real allowed = larger(options->tolerance, rounding);
   real contraction;
@@ -236,7 +235,7 @@ static solver_motion_status solve_step(const step_start *start, const solver_ste
   return status;
 }
 
-/* Whether the state is the one that the last step ended with, as far as its polynomial goes. */
+/* Whether the state is the end of the last step, by its polynomial. */
 static int continues(const solver_step_memory *memory, const solver_state *state) {
   if (!(memory->size > 0)) return 0;
   for (int i = 0; i < N; i++) {
@@ -245,7 +244,7 @@ static int continues(const solver_step_memory *memory, const solver_state *state
   return 1;
 }
 
-/* A part of a step, which begins with the state in work->end; its inputs and their rates have moved by then. */
+/* Makes the start of a part of a step from the state in work->end, with inputs and rates at that time. */
 static step_start part_of_step(const step_start *whole, int number, int count, workspace *work) {
   const real size = whole->size / (real)count;
   const step_start own = {.x = work->end.x,
@@ -258,7 +257,7 @@ static step_start part_of_step(const step_start *whole, int number, int count, w
   return own;
 }
 
-/* The step in so many parts, whose unknowns it leaves in the workspace, as their end in work->end. */
+/* Solves the step in so many parts. Leaves their unknowns in the workspace, and the end in work->end. */
 static solver_motion_status take_parts(int count, const step_start *whole, const solver_state *state,
                                        const solver_step_options *options, solver_step_memory *memory,
                                        workspace *work, solver_step_info *info) {
@@ -311,7 +310,7 @@ static int state_is_finite(const solver_state *state) {
   return all_finite(state->x, N) && all_finite(state->v, N) && all_finite(state->a, N);
 }
 
-/* Whether no accelerations are given while an input changes whose acceleration the rods feel. */
+/* Whether an input changes whose acceleration acts on the rods, but no accelerations are given. */
 static int misses_acceleration(const step_start *start) {
   if (!start->inputs_rate || start->inputs_acceleration) return 0;
   for (int i = 0; i < INPUTS; i++) {
@@ -320,7 +319,7 @@ static int misses_acceleration(const step_start *start) {
   return 0;
 }
 
-/* A step, whole or in parts; the state is moved on where it is done, and else as it was. */
+/* Takes a step, whole or in parts; the state changes only if the step is done. */
 static solver_motion_status take_step(const step_start *whole, solver_state *state, solver_step_memory *memory,
                                       const solver_step_options *chosen, workspace *work, solver_step_info *info) {
   if (!(whole->size > 0) || !isfinite(whole->size)) return SOLVER_MOTION_BAD_STEP;

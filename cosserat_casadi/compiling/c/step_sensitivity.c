@@ -1,6 +1,7 @@
-/* Derivatives of a step by what it begins with: the implicit function theorem at its stages, with the Jacobian of each. */
+/* Derivatives of a step by its start and its inputs: the implicit function theorem at its stages, with the Jacobian of
+   each. */
 
-/* Where derivatives go, 2 N numbers in each column; any may be null. */
+/* Results, 2 N numbers in each column; any may be null. */
 typedef struct {
   real *by_start;       /* by x, then v */
   real *by_inputs[ORDERS]; /* by inputs, their rates at the start, their accelerations */
@@ -25,7 +26,7 @@ static int factorise_stages(real size, const stage_factors *found, workspace *wo
   return factorise_system(matrix_of_stages(), work->stage_values, found);
 }
 
-/* Changes of the end, x then v, that go with changes of the stages' unknowns, the start as it is. */
+/* Changes of the end, x then v, by changes of the stages' unknowns at a constant start. */
 static void end_changes(real size, const real *stages, real *end) {
   for (int i = 0; i < N; i++) {
     const real first = stages[i];
@@ -38,7 +39,7 @@ static void end_changes(real size, const real *stages, real *end) {
   }
 }
 
-/* Minus what the equations of both stages change by with a coordinate at the start, or with its rate. */
+/* Minus the change of the equations of both stages by a coordinate at the start, or by its rate. */
 static void change_by_start(real size, int column, real *stages, const workspace *work) {
   const int unknown = column % N;
   const int of_rate = column >= N;
@@ -52,13 +53,14 @@ static void change_by_start(real size, int column, real *stages, const workspace
   }
 }
 
-/* The same with an input; its rate is behind the inputs, its acceleration behind the rates. */
+/* Minus the change of the equations of both stages by an input; rates stand behind the inputs, accelerations behind the
+   rates. */
 static void change_by_input(real size, int column, real *stages, const workspace *work) {
   const int count = INPUTS > 0 ? INPUTS : 1;
   const int input = column % count;
   const int changed = column / count;
   for (int s = 0; s < STAGES; s++) {
-    /* What a change of the rate, or of the acceleration, has made of the inputs and their rates by the stage. */
+    /* Changes of the inputs and their rates at the stage by a change of the rate, or of the acceleration. */
     const real time = STAGE_NODES[s] * size;
     const real grown[ORDERS] = {1, time, time * time / 2};
     for (int order = 0; order <= changed; order++) {
@@ -68,8 +70,8 @@ static void change_by_input(real size, int column, real *stages, const workspace
   }
 }
 
-/* Solves for both stages in place. Rods that are eliminated on their own have no pivots among those of others, and leave
-   errors far above rounding: one step of refinement takes them away. */
+/* Solves for both stages in place. Separate elimination of rods restricts pivots and leaves errors far above rounding;
+   one step of refinement removes them. */
 static void solve_stage_columns(const stage_factors *factors, real *columns, workspace *work) {
   real *left = work->left_of_columns;
   memcpy(left, columns, sizeof work->left_of_columns);
@@ -93,7 +95,7 @@ static void solve_stage_columns(const stage_factors *factors, real *columns, wor
 #include "contact_sensitivity.c"
 #endif
 
-/* Some columns of a derivative, four at a time. */
+/* Solves for columns of a derivative, four at a time. */
 static void differentiate_columns(void (*change)(real, int, real *, const workspace *), real size, int first, int last,
                                   const stage_factors *factors, real *columns, workspace *work) {
   real *stages = work->stage_solution;
@@ -130,7 +132,7 @@ static void differentiate_by_start(real size, const stage_factors *factors, real
   }
 }
 
-/* Columns of a matrix become their products with the derivative by the start. */
+/* Multiplies the columns of a matrix by the derivative by the start. */
 static void carry_on(const real *by_start, int count, real *columns, workspace *work) {
   real *carried = work->carried;
   for (int j = 0; j < count; j++) {
@@ -148,7 +150,7 @@ static void add_columns(const real *columns, real factor, real *sum) {
   for (int i = 0; i < 2 * N * INPUTS; i++) sum[i] += factor * columns[i];
 }
 
-/* Derivatives of one part of a step. Zero where there are none. */
+/* Derivatives of one part of a step. Returns zero if it has none. */
 static int differentiate_part(const step_start *start, const real *unknowns, const step_derivatives *own, workspace *work) {
   const stage_factors factors = {work->stage_rows, work->stage_columns, work->stage_matrix, work->stage_pivots,
                                  &work->stages_as_a_whole};
@@ -180,7 +182,7 @@ static int differentiate_part(const step_start *start, const real *unknowns, con
   return 1;
 }
 
-/* Adds what a later part of a step changes by with the inputs, their rates, or their accelerations, at its start. */
+/* Adds the change of a later part of a step by the inputs, their rates, or their accelerations, at its start. */
 static void add_part(const step_derivatives *later, real time, const step_derivatives *wanted, workspace *work) {
   if (wanted->by_start) carry_on(later->by_start, 2 * N, wanted->by_start, work);
   const real grown[ORDERS] = {1, time, time * time / 2};
@@ -194,8 +196,7 @@ static void add_part(const step_derivatives *later, real time, const step_deriva
   }
 }
 
-/* Derivatives of a step that was taken in parts, from work->begin, the state that it began with. Zero where there are
-   none. */
+/* Derivatives of a step in parts from its start, work->begin. Returns zero if it has none. */
 static int differentiate_step(const step_start *whole, int count, const step_derivatives *wanted, workspace *work) {
   const step_derivatives later = {work->by_start,
                                   {work->by_inputs, work->by_inputs_rate, work->by_inputs_acceleration}};
@@ -224,7 +225,7 @@ static int differentiate_step(const step_start *whole, int count, const step_der
   return 1;
 }
 
-/* Where the step needed many iterations, the Jacobians at its stages make the one that the next step begins with. */
+/* If the step needed many iterations, the next step begins with a Jacobian from those at its stages. */
 static void keep_jacobian_of_stages(real size, solver_step_memory *memory, workspace *work) {
   const stage_factors factors = kept_factors(memory);
   if (memory->jacobian_size > 0) return;

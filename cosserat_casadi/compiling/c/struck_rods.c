@@ -3,12 +3,12 @@
    other rod is seen from, for the positions of its sections that are looked at first, and for a ball about those of each of
    its elements: seen_from_of, looked_at_of, balls_of. */
 
-/* Distance of a section of the other rod from the point that it is seen from, with its derivatives. */
+/* Distance of a section of the other rod from the point of view, with derivatives along that rod. */
 static void surface_of_point(const real *from, const real *point, real *distance, real *normal, real *curvature) {
   real way[3];
   for (int i = 0; i < 3; i++) way[i] = point[i] - from[i];
   const real length = SQUARE_ROOT(inner(way, way));
-  /* Where both are one no direction is known. */
+  /* If both coincide, the direction is unknown. */
   *distance = length > NEXT_TO_NOTHING ? length : NEXT_TO_NOTHING;
   for (int i = 0; i < 3; i++) normal[i] = way[i] / *distance;
   for (int i = 0; i < 3; i++) {
@@ -28,8 +28,8 @@ static real way_to_ball(const facing *rod, int element, const real *point, works
   return way_between(ball, point) - ball[3];
 }
 
-/* Finds the section of a rod that is nearest to a point: of those that are looked at first, then next to that one. The
-   element of the nearest ball is looked at first, and no other one whose ball is farther than what is found. */
+/* Finds the section of a rod nearest to a point: first among the sections looked at, then next to that one. It begins
+   with the element of the nearest ball, and skips elements whose balls are farther than the best section. */
 static void find_nearest(const facing *rod, const real *point, section_gap *nearest, workspace *work) {
   const real taper = rod->radius_at_tip - rod->radius_at_base;
   const real widest = taper > 0 ? taper : 0;
@@ -57,8 +57,8 @@ static void find_nearest(const facing *rod, const real *point, section_gap *near
   look_lowest_by(rod, look, nearest, work);
 }
 
-/* Positions of the sections of a rod that are looked at first, and a ball about those of each element: its centre is the
-   middle one, its radius the largest distance from there. */
+/* Computes the positions of the sections of a rod that are looked at first, and a ball about those of each element: its
+   centre is the middle section, its radius the largest distance from it. */
 static void place_looks(const facing *rod, const real *nodes, workspace *work) {
   real *looked_at = looked_at_of(rod, work);
   (void)work;
@@ -82,7 +82,7 @@ static void place_looks(const facing *rod, const real *nodes, workspace *work) {
   }
 }
 
-/* The other rod is looked at by these positions from now on, if there is one. */
+/* Sets the positions of the other rod, if there is one, for the searches that follow. */
 static void fit_other(const facing *own, const real *nodes, workspace *work) {
   if (!own->other) return;
   const real *of_other = nodes + 3 * own->elements * own->nodes;
@@ -96,13 +96,13 @@ static int is_at_end(const other_section *other) { return other->place <= AT_END
 /* Abscissa of the other section of a gap; 0 where there is none. */
 static real place_on_other(const facing *own, const section_gap *gap) { return own->other ? gap->other.place : 0; }
 
-/* How the direction from the other section turns as that section slides. */
+/* Rate of the direction from the other section as that section slides. */
 static void turned_by_sliding(const other_section *other, real *turned) {
   for (int i = 0; i < 3; i++) turned[i] = inner(other->curvature + 3 * i, other->tangent);
 }
 
-/* The surface of the other rod at a point: its distance is that of its nearest section, which goes along as the point moves.
-   Where a section of the other rod is looked at, the surface is the point that it is seen from. Zero beside an obstacle. */
+/* Evaluates the surface of the other rod at a point by its nearest section, which slides as the point moves. For a
+   section of the other rod itself, the surface is the point of view. Returns zero for an obstacle. */
 static int surface_of_rod(const facing *own, const real *point, real *distance, section_gap *gap, workspace *work) {
   const facing *rod = own->other;
   if (!rod) {
@@ -142,7 +142,7 @@ static void weigh_other(const facing *own, section_gap *gap) {
   memcpy(gap->other.rows, section.rows, sizeof section.rows);
 }
 
-/* Adds to weights of the points of a gap those of the other rod, if there is one. */
+/* Adds the weights of the other rod's nodes, if there is one, to the weights of a gap. */
 static void add_other(const facing *own, const section_gap *gap, real times, real *weights) {
   const other_section *other = &gap->other;
   for (int i = 0; own->other && i < other->nodes; i++) {
@@ -153,8 +153,8 @@ static void add_other(const facing *own, const section_gap *gap, real times, rea
 
 /* ---- How the other rod, if there is one, takes part in derivatives of a gap ---- */
 
-/* Adds to weights of the points those of a row of row_weights: the way from the other section to the own one along an axis;
-   nothing of the slope along the own rod; the tangent of the other rod along the normal. */
+/* Adds the other rod's part of a row of row_weights: minus its section along an axis, nothing for the slope along the
+   first rod, its tangent along the normal for the last row. */
 static void add_row_of_other(const facing *own, const section_gap *gap, int row, const real *direction, real *weights) {
   const other_section *other = &gap->other;
   if (!own->other || row == OWN_SLOPE) return;
@@ -176,7 +176,8 @@ static void turn_slope_of_other(const facing *own, const section_gap *gap, real 
   moved[OTHER_SLOPE] += inner(turned, moved);
 }
 
-/* Second derivative of the distance, by two numbers that move both sections, as both are held and the other one then slides. */
+/* Part of the second derivative of the distance by two numbers that move both sections, since the other section
+   slides. */
 static real turning_beside_other(const facing *own, const section_gap *gap, const real *moved, const real *more) {
   const other_section *other = &gap->other;
   real sum = 0;

@@ -1,4 +1,5 @@
-/* Another rod in the place of an obstacle: what contact_gaps.c, which comes between, needs of struck_rods.c. */
+/* Another rod in the place of an obstacle: declarations of struck_rods.c for contact_gaps.c, which is included
+   between. */
 
 #define RODS_FACE_RODS
 

@@ -1,12 +1,12 @@
-/* The error of an answer: how far the tips lie from those of half as many steps, which leave far more. The equilibrium with
-   half of the steps is a step of Newton's method away, with the Jacobian of the answer.
+/* The error of an answer: the distance of its tips from the tips with half as many steps, whose error is far larger.
+   The equilibrium with half of the steps is one step of Newton's method away, with the Jacobian of the answer.
 
    cosserat_casadi/tubes/tube_solve.py solves with both numbers of steps, and compares the same.
 
    Uses of the equations: halved_residual_at, halved_change_at. */
 
-/* Estimated error of an equilibrium whose factorised Jacobian is in updated_jacobians[0]; the whole length, 1, where that
-   is singular, or the tips of half of the steps are no numbers. */
+/* Estimated error of an equilibrium whose factorised Jacobian is in updated_jacobians[0]; it is the whole length, 1, if
+   that is singular, or the tips with half of the steps are not numbers. */
 static real estimated_error(const real *x, const real *inputs, workspace *work) {
   const jacobian_factors *jacobian = &work->updated_jacobians[0].factors;
   real *step = work->correction;

@@ -11,7 +11,7 @@ static solver_status out_of_range(solver_info *info) {
   return SOLVER_OUT_OF_RANGE;
 }
 
-/* Of a factorised Jacobian; its diagonal holds inverse pivots. */
+/* Determinant of a factorised Jacobian, whose diagonal holds inverse pivots. */
 static real determinant_of(const jacobian_factors *jacobian) {
   real product = 1;
   if (!jacobian->regular) return 0;
@@ -32,9 +32,9 @@ real tubes_determinant(const real *x, const real *inputs, solver_workspace *work
   return determinant_of(factors);
 }
 
-/* Where tubes are nearly opposed a robot may bend to either side, or stay between, which is not stable: a long step comes to
-   any of the three. Steps from straight tubes that keep the sign of the determinant, none of which twists the tubes by more
-   than SAME_BRANCH. Zero, and x as it was, where they do not lead to the inputs: tubes that are opposed exactly stay so. */
+/* Solves in steps from straight tubes that keep the sign of the determinant and twist the tubes by at most SAME_BRANCH
+   each. Nearly opposed tubes may bend to either side, or stay between, which is unstable; a long step may reach any of
+   the three. Returns zero and restores x if the steps do not reach the inputs: exactly opposed tubes stay opposed. */
 static int solve_with_care(const real *inputs, real *x, workspace *work, solver_info *info) {
   static const newton_limits limits = {
       .max_iterations = MAX_ITERATIONS, .max_jacobians = MAX_ITERATIONS, .max_halvings = 0, .inexact = 0,
@@ -107,7 +107,7 @@ solver_status tubes_solve_sensitivity(const real *inputs, const real *x, real *d
   return solver_solve_sensitivity(inputs, x, d_x_d_inputs, d_poses_d_inputs, work);
 }
 
-/* The determinant at the solution of a turn, whose Jacobian the memory is left with; 0 at a snap. */
+/* The determinant at the solution of a turn, 0 at a snap; leaves the Jacobian in the memory. */
 static real determinant_at_end(const real *inputs, const real *x, int has_derivatives, solver_memory *memory,
                                workspace *work) {
   if (!has_derivatives || !memory->has_jacobian) {

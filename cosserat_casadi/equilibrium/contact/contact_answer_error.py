@@ -110,5 +110,7 @@ def _extents(solution: Solution) -> dict[tuple[str, str, bool], tuple[float, flo
 
 def _between_sections(first: Contact, second: Contact) -> list[float]:
     """Differences of the forces at sections inside two lines, N."""
-    one, other = ({section.at: section.force for section in contact.inside} for contact in (first, second))
-    return [abs(one.get(at, 0.0) - other.get(at, 0.0)) for at in one.keys() | other.keys()]
+    forces = {section.at: section.force for section in first.inside}
+    other_forces = {section.at: section.force for section in second.inside}
+    places = forces.keys() | other_forces.keys()
+    return [abs(forces.get(at, 0.0) - other_forces.get(at, 0.0)) for at in places]

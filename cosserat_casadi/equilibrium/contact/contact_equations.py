@@ -130,7 +130,7 @@ class Placed:
             elif load.body is not None:
                 units.append(discrete.contact_unit(load.body, of_body=True))
             else:
-                assert load.rod is not None, "what is of no body is of a rod"
+                assert load.rod is not None, "a load acts on a body or on a rod"
                 units.append(discrete.tension_unit(load.rod))
         return np.array(units)
 

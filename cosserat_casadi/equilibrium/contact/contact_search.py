@@ -181,10 +181,11 @@ class ContactEquilibrium:
 
     def _beside_contacts(self, rod: str) -> FloatArray:
         """Abscissae close to the places of contact, where a rod starts to enter the obstacle beyond a line."""
-        beside = np.concatenate([-np.geomspace(1e-4, 2e-2, 12), np.geomspace(1e-4, 2e-2, 12)])
-        ends = [end for touch in self.state.along(rod) for end in touch.ends]
-        X = (np.array(ends)[:, None] + beside).ravel() if ends else np.zeros(0)
-        return X[(X > 0.0) & (X < 1.0)]
+        distances = np.geomspace(1e-4, 2e-2, 12)
+        beside = np.concatenate([-distances, distances])
+        ends = np.array([end for touch in self.state.along(rod) for end in touch.ends], dtype=float)
+        X = (ends[:, None] + beside).ravel()
+        return np.asarray(X[(X > 0.0) & (X < 1.0)])
 
     def unmet(self) -> float:
         """Bound on the error of poses, places and forces because contacts hold only to a tolerance.

@@ -214,8 +214,8 @@ def _on_two_obstacles(state: ContactState) -> str:
         together = second.start - first.end < NEAR
         if same_rod and together and first.obstacle != second.obstacle:
             return (
-                f" {first.owner!r} touches {first.obstacle!r} and {second.obstacle!r} together near "
-                f"X = {second.start:.2g}: exact contact with two obstacles at one section is not found. Give the "
+                f" {first.owner!r} touches {first.obstacle!r} and {second.obstacle!r} together near X = "
+                f"{second.start:.2g}: the search finds no exact contact with two obstacles at one section. Give the "
                 "obstacles a width, m."
             )
     return ""
@@ -228,8 +228,9 @@ def _over_joints(scene: scenes.Scene, state: ContactState) -> str:
             meets = before.end > TIP - BESIDE_JOINT and after.start < BESIDE_JOINT
             if meets and before.obstacle == after.obstacle and (before.is_line or after.is_line):
                 return (
-                    f" {first!r} and {second!r} lie on {before.obstacle!r} on both sides of their joint: a line of "
-                    "contact is not found over a joint. Give the obstacles a width, m, or make one rod of the two."
+                    f" {first!r} and {second!r} lie on {before.obstacle!r} on both sides of their joint: the search "
+                    "finds no line of contact over a joint. Give the obstacles a width, m, or make one rod of the "
+                    "two."
                 )
     return ""
 

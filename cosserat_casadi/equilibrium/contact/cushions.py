@@ -167,9 +167,11 @@ def cushioned(scene: scenes.Scene, factor: float = 1.0) -> Model:
 
 def _softened(contact: scenes.RodContact, scene: scenes.Scene, factor: float) -> scenes.RodContact:
     """A contact of rods with a cushion: so wide that few sections are enough, and as soft as the softest rod."""
-    radii = [section_radius(rod_properties(rod), DENSE).min() for rod in scene.rods]
-    width = float(max(CUSHION * min(radii), THINNEST_CUSHION * max(rod.length for rod in scene.rods)))
-    stiffness = factor * min(SURFACE_STIFFNESS * _unit(rod) * rod.length**3 for rod in scene.rods) / width**2
+    least_radius = min(section_radius(rod_properties(rod), DENSE).min() for rod in scene.rods)
+    longest = max(rod.length for rod in scene.rods)
+    width = float(max(CUSHION * least_radius, THINNEST_CUSHION * longest))
+    softest = min(_unit(rod) * rod.length**3 for rod in scene.rods)
+    stiffness = factor * SURFACE_STIFFNESS * softest / width**2
     changes = {"exact": False, "width": width, "stiffness": stiffness, "friction": 0.0, "restitution": 0.0}
     return contact.model_copy(update=changes)
 
@@ -296,9 +298,9 @@ def _judged(model: Model, inputs: FloatArray, end: ContinuationResult) -> Soluti
 
 def depth(solution: Solution) -> float:
     """Largest depth of rods and bodies in obstacles, relative to their lengths."""
-    of_rods = max((float(-gaps.min()) for _, _, gaps in _all_gaps(solution)), default=0.0)
+    of_rods = [float(-gaps.min()) for _, _, gaps in _all_gaps(solution)]
     of_bodies = [-body_gap(solution, body, obstacle) for body, obstacle in body_pairs(solution.model.scene)]
-    return max([of_rods, *of_bodies])
+    return max([max(of_rods, default=0.0), *of_bodies])
 
 
 def first_state(solution: Solution) -> ContactState:

@@ -78,7 +78,7 @@ def marginal_contact(solution: Solution) -> str:
             way = f"{abs(near.depth):.2g} of the length"
             if near.depth > LEAST_TOLERANCE:
                 inside = f"{near.owner!r} enters {near.obstacle!r} by {way} beside its contacts"
-                return f"{inside}, as accuracy.tolerance lets it: a smaller one tells what presses there."
+                return f"{inside}, within accuracy.tolerance: a smaller tolerance shows which contacts press there."
             return f"{near.owner!r} is {way} from {near.obstacle!r}, which it does not press."
     return ""
 

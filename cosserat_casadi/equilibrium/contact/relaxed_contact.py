@@ -341,7 +341,7 @@ def relaxed_contact(
     """
     scene = model.at().scene.baked()
     if not scene.touches_exactly:
-        problem = "none is touched exactly: there is no pair to relax"
+        problem = "no rod touches exactly: there is no pair to relax"
         raise SceneError(Problem("obstacles", problem, "take the model itself"))
     refuse(exact_rods(scene, "relaxed contact"))
     if sections < 1:
