@@ -62,15 +62,15 @@ from cosserat_casadi.motion.simulate import (
     factor_for,
     judged,
     left_by,
-    motion_of,
     not_started,
     started,
     tolerance_of,
+    whole_but_interrupted,
 )
 from cosserat_casadi.motion.simulate import simulate as simulate_model
 from cosserat_casadi.motion.sudden_loads import is_sudden
 from cosserat_casadi.motion.tip_paths import Paths, path_distance, watched_states
-from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
+from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.numerics.integration import StepOutcome
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene
@@ -481,6 +481,8 @@ def _with_fixed(search: _Search, model: Model) -> Motion:
         return ended_early(simulator, timed.history)
     level = _with_waves(search, ResolvedMotion(simulator, timed.history, simulator.paths(timed.history)))
     search.levels.append(level)
+    if timed.is_interrupted:
+        raise KeyboardInterrupt
 
     turn = _largest_turn(timed.history, search.simulation.duration)
     finer = {name: _finer(scene, name, own, turn) for name, own in model.discretisation.items()}
@@ -580,7 +582,7 @@ def _with_tolerance(search: _Search, first: Model) -> Motion:
             return _given_up(search, CHATTERS.format(**search.told, foreseen=search.foreseen_impacts))
         rung = search.climb()
     timed = timed or _timed(search)
-    if timed.history.outcome is StepOutcome.INTERRUPTED:
+    if timed.is_interrupted:
         raise KeyboardInterrupt
     if not timed.history.completed:
         return ended_early(search.last.simulator, timed.history)
@@ -688,7 +690,7 @@ def _given_up(search: _Search, why: str) -> Motion:
     level = search.last
     if level.waves and np.isfinite(search.step_tolerance) and not is_struck(level.history):
         timed = level.simulator.tightened(level.history, level.step_tolerance, lambda _: np.inf)
-        if timed.history.outcome is StepOutcome.INTERRUPTED:
+        if timed.is_interrupted:
             raise KeyboardInterrupt
         if timed.history.completed:
             _tell_fronts(search, timed.history)
@@ -713,7 +715,7 @@ def _on_level(search: _Search, simulator: Simulator, modes: int) -> tuple[Histor
         search.step_tolerance = _first_step_tolerance(search)
     elif len(search.levels) == TOLD_AFTER and not given:
         told = search.last.simulator.tightened(search.last.history, search.last.step_tolerance, lambda _: np.inf)
-        if told.history.outcome is StepOutcome.INTERRUPTED:
+        if told.is_interrupted:
             raise KeyboardInterrupt
         search.time_error = told.error
         wanted = TIME_SHARE * search.tolerance
@@ -888,7 +890,7 @@ def _interrupted(search: _Search) -> Motion:
     """Return the finest motion that was computed to its end before the search was interrupted."""
     level = search.last
     error = search.space_error + search.time_error
-    told = f": its estimated error is {error:.2g} of the length."
+    told = ""
     controlled = np.isfinite(search.step_tolerance)
     if np.isfinite(search.space_error) and controlled and not np.isfinite(search.time_error):
         # Nothing was compared that tells it of this motion; steps of given size have no share of the tolerance.
@@ -898,6 +900,4 @@ def _interrupted(search: _Search) -> Motion:
         told = f": {modes}, its steps about {foreseen:.2g} where they are as exact as those of like motions."
     elif not np.isfinite(error):
         error = float("nan")
-        told = ", and its error is not known."
-    message = f"{MotionOutcome.INTERRUPTED.value} The motion is whole, but not as exact as was asked{told}"
-    return motion_of(level.simulator, level.history, MotionOutcome.INTERRUPTED, error, message)
+    return whole_but_interrupted(level.simulator, level.history, error, told)
