@@ -10,7 +10,7 @@ from dataclasses import replace
 from math import inf
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.levels import FIRST_LEVELS, REFERENCE_MODES, Level, nodes_for_turn
+from cosserat_casadi.accuracy.levels import FIRST_LEVELS, REFERENCE_MODES, Level, nodes_for_turn, told_waves
 from cosserat_casadi.accuracy.scene_solver import SceneSolver
 from cosserat_casadi.equilibrium.contact.contact_answer_error import same_contacts, with_contact_error
 from cosserat_casadi.equilibrium.contact.contact_equations import Grids
@@ -79,7 +79,10 @@ def solve_contact_scene(solver: SceneSolver, transport: str) -> Solution:
     assert coarse is not None
     if not coarse.converged:
         return coarse
-    return coarse.unresolved()
+    unresolved = coarse.unresolved()
+    if scene.accuracy.fixed:
+        return unresolved
+    return replace(unresolved, message=unresolved.message + told_waves(most_wave_modes(scene)))
 
 
 def _unmet(solution: Solution | None) -> float:

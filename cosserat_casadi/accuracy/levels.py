@@ -52,6 +52,13 @@ SPARE_NODES = 2
 """Intervals of a verified level beyond the number for the modes and the turn of a rod."""
 
 
+TOO_MANY_WAVES = (
+    " Coils, windings or loads ask for more than {modes} modes in an element, and at most {most} are tried: fix "
+    "accuracy.modes and accuracy.nodes, or cut the rod into shorter elements by point wrenches of zero."
+)
+"""Sentence for a rod whose waves no level resolves."""
+
+
 def nodes_for_turn(modes: int, turn: float) -> int:
     """Chebyshev intervals that resolve a rod with a number of modes and a turn.
 
@@ -85,6 +92,12 @@ def _layers(scene: scenes.Scene) -> Iterator[tuple[scenes.ObstacleRecord, RodPro
 def is_thin(scene: scenes.Scene) -> bool:
     """Whether thin smooth obstacles ask for more intervals than the modes of a usual level: a solve takes seconds."""
     return layer_nodes(scene) > nodes_for(REFERENCE_MODES[FIRST_LEVELS[0][1]])
+
+
+def told_waves(modes: int) -> str:
+    """Sentence on modes that waves need if no level resolves them and another level tells its error; else empty."""
+    most = REFERENCE_MODES[-1]
+    return TOO_MANY_WAVES.format(modes=modes, most=most) if modes > REFERENCE_MODES[-2] else ""
 
 
 def verified_modes(scene: scenes.Scene, of_short: tuple[int, ...]) -> tuple[int, ...]:
@@ -189,6 +202,10 @@ class Level:
         if index > self.finest:
             return None
         return replace(self, index=index)
+
+    def with_seeing_modes(self, modes: int) -> Level | None:
+        """The lowest higher level with modes that see the waves of a rod, and one above to compare it with, if any."""
+        return replace(self, finest=max(self.finest, _lowest_with(SIGNAL_FACTOR * modes))).with_modes(modes)
 
     def with_extrapolated_modes(self, modes: int) -> Level | None:
         """A higher level towards a number of modes that may be too large; None if none is worth a try.
