@@ -84,8 +84,8 @@ def test_a_path_of_a_rod_that_a_moment_rolls_up_knows_its_error() -> None:
 
 def pulled(accuracy: dict[str, Any]) -> Scene:
     """A coil of three turns that is pulled across its axis and let go, within the period of its axial mode."""
-    turns, period = 3, 0.0125
-    half = [0.0, 1.0, 0.0]
+    turns, period = 3, 0.0122
+    half = [0.0, 1.67, 0.0]
     inertia = [DENSITY * AREA_RADIUS**2] * 2 + [2 * DENSITY * AREA_RADIUS**2]
     heavy = {"linear_density": DENSITY, "rotary_inertia": inertia, "damping": {"retardation_time": 0.02 * period}}
     wave = {"input": "push.force", "amplitude": half, "frequency": 1 / period, "wave": "one_minus_cosine"}
@@ -96,14 +96,14 @@ def pulled(accuracy: dict[str, Any]) -> Scene:
             "loads": [push(force=[0, 0, 0])],
             "accuracy": accuracy,
             "motions": [wave],
-            "simulation": {"duration": period, "frames": 11, "start": "unloaded", "tolerance": 1e-2},
+            "simulation": {"duration": period, "frames": 21, "start": "unloaded", "tolerance": 1e-2},
         }
     )
 
 
-@pytest.mark.parametrize("accuracy", [{}, {"modes": 5, "nodes": 20}])
+@pytest.mark.parametrize("accuracy", [{}, {"modes": 4, "nodes": 30}])
 def test_a_motion_of_a_coil_knows_its_error(accuracy: dict[str, Any]) -> None:
-    """Six modes of three turns see a fifth of their error, and so do nine where six take one for their bending."""
+    """Levels from six modes on told a fifth of their error along three turns, four modes and eight told less too."""
     motion = simulate(pulled(accuracy))
     reference = simulate(pulled({"modes": 18, "nodes": 46}))
     apart = np.linalg.norm(motion.tip().position - reference.tip().position, axis=1).max() / (3 * PITCH)
