@@ -74,8 +74,8 @@ if TYPE_CHECKING:
 LARGEST_SHAPE_ERROR = 0.1
 """Shape error, relative to the length, above which a discretisation fixed by the user is reported as UNRESOLVED."""
 
-COARSENING_SHARES = (0.85, 0.35)
-"""Shares of the tolerance for coarsening, one try after the other."""
+COARSENINGS = ((0.85, False), (0.35, False), (0.85, True))
+"""Shares of the tolerance for coarsening, and whether pairs of strains keep equal modes; one try after the other."""
 
 DECIDING_TOLERANCE = 1e-5
 """Tolerance of the solution that decides which equilibrium of a held rod is computed, for every wanted tolerance."""
@@ -363,9 +363,9 @@ def _coarsened(solver: SceneSolver, resolution: Resolution) -> Solution:
     """The cheapest solution near a reference; the reference itself if none is near enough."""
     reference = resolution.preview.reference
     reference_error = resolution.tip_error
-    for share in COARSENING_SHARES:
+    for share, as_round in COARSENINGS:
         bound = share * solver.tolerance - reference_error
-        discretisation, start = Coarsening(resolution.preview, bound, solver.wave_modes).run()
+        discretisation, start = Coarsening(resolution.preview, bound, solver.wave_modes, as_round).run()
         model = solver.build(discretisation)
         solution = corrected_from(model, start, reference.inputs)
         if solution is not None:
