@@ -767,7 +767,7 @@ def whole_but_interrupted(simulator: Simulator, history: History, error: float, 
         simulator: the simulator that computed it.
         history: the motion.
         error: estimated error of the paths over the length; nan if it is not known.
-        told: what is told of the error; by default the number.
+        told: end of the sentence on the error; by default with the number.
     """
     if not told:
         is_known = np.isfinite(error)
