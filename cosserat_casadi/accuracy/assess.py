@@ -31,11 +31,9 @@ from cosserat_casadi.equilibrium.metrics import largest_turn
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.required_modes import modes_for_turn
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.rod.material_functions import stress_beyond_hooke
-
-BEYOND = 2
-"""Modes beyond T/2 with which the coefficients of a wave show."""
 
 REFERENCE_SHARE = 0.15
 """Share of the tolerance for the error of a reference solution by its modes; its grid has a third of that."""
@@ -211,10 +209,9 @@ def min_modes(solution: Solution, turn: float, tolerance: float) -> int:
         turn: largest turn of an element, rad.
         tolerance: strain below which an error does not matter.
     """
-    needed = ceil(turn / 2) + BEYOND
+    needed = modes_for_turn(turn)
     fewest = min(min(d.modes) for d in solution.model.discretisation.values())
-    # An element within one turn has no whole wave to miss.
-    if fewest >= needed or turn <= 2 * np.pi:
+    if fewest >= needed:
         return 0
     if node_residual(solution) <= tolerance:
         return 0

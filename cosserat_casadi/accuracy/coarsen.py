@@ -58,6 +58,9 @@ FEWEST = 2
 NODES_MARGIN = 1.1
 """Factor on the intervals that would just resolve the reference: a coarser rod may turn a little more somewhere."""
 
+SINGLE = (2, 5)
+"""Indices of torsion and extension, which belong to no pair of strains of a round rod."""
+
 UNBOUNDED = 1e9
 """Excess of a grid that does not resolve the rod, so that its tips may be arbitrary, even NaN."""
 
@@ -88,11 +91,14 @@ class Coarsening:
         bound: largest change of a tip pose: distance over length, angle in rad.
         wave_modes: modes that waves along a rod need, 0 without waves: on fewer intervals a wave is aliased to a longer
             one, and the residual is too wrong for a preview.
+        round: whether both bendings, and both shears, keep one number of modes: with unequal ones a round rod that may
+            turn about an axis, by symmetry, would turn far.
     """
 
     preview: Preview
     bound: float
     wave_modes: int = 0
+    round: bool = False
 
     def run(self) -> tuple[dict[str, Discretisation], FloatArray]:
         """The cheapest discretisation of every rod, and unknowns near its equilibrium, shape (n,)."""
@@ -181,8 +187,9 @@ class Coarsening:
         current = dict(modes)
         droppable: set[tuple[tuple[str, ...], int]] = set()
         for names in self.alike:
-            components = range(len(current[names[0]]))
-            droppable.update((names, component) for component in components)
+            admitted = self.preview.model.discrete.rods[names[0]].properties.admitted
+            single = [component for component, strain in enumerate(admitted) if not self.round or strain in SINGLE]
+            droppable.update((names, component) for component in single)
         while droppable:
             best_rate = np.inf
             best_trial = None

@@ -10,7 +10,7 @@ from dataclasses import replace
 from math import inf
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.levels import FIRST_LEVELS, REFERENCE_MODES, Level, nodes_for_turn
+from cosserat_casadi.accuracy.levels import FIRST_LEVELS, REFERENCE_MODES, Level, nodes_for_turn, told_waves
 from cosserat_casadi.accuracy.scene_solver import SceneSolver
 from cosserat_casadi.equilibrium.contact.contact_answer_error import same_contacts, with_contact_error
 from cosserat_casadi.equilibrium.contact.contact_equations import Grids
@@ -20,7 +20,7 @@ from cosserat_casadi.equilibrium.contact.contact_state import state_in
 from cosserat_casadi.equilibrium.metrics import largest_turn
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise, nodes_for
-from cosserat_casadi.model.required_modes import wave_modes
+from cosserat_casadi.model.required_modes import most_wave_modes
 
 FINER_MODES = 3
 """Modes that are added to the user's to estimate their error."""
@@ -79,7 +79,10 @@ def solve_contact_scene(solver: SceneSolver, transport: str) -> Solution:
     assert coarse is not None
     if not coarse.converged:
         return coarse
-    return coarse.unresolved()
+    unresolved = coarse.unresolved()
+    if scene.accuracy.fixed:
+        return unresolved
+    return replace(unresolved, message=unresolved.message + told_waves(most_wave_modes(scene)))
 
 
 def _unmet(solution: Solution | None) -> float:
@@ -91,8 +94,7 @@ def _levels(scene: scenes.Scene) -> list[tuple[int | tuple[int, ...], int]]:
     """Modes and least intervals of the levels, in their order."""
     accuracy = scene.accuracy
     if not accuracy.fixed:
-        needed = max(wave_modes(scene, rod.name) for rod in scene.rods)
-        first = Level.first(FIRST_LEVELS[0][0], needed)
+        first = Level.first(FIRST_LEVELS[0][0], most_wave_modes(scene))
         return [(modes, nodes_for(modes)) for modes in REFERENCE_MODES[first.index : first.finest + 1]]
     modes = DEFAULT_MODES if accuracy.modes is None else accuracy.modes
     nodes = nodes_for(_most(modes)) if accuracy.nodes is None else accuracy.nodes

@@ -13,7 +13,7 @@ from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.contact_layers import seeing_nodes, seeing_sections
 from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.model.element_ends import NARROWEST, element_ends
-from cosserat_casadi.model.required_modes import signal_modes
+from cosserat_casadi.model.required_modes import most_wave_modes, unloaded_turn
 from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.scene.accuracy import MOST_SECTIONS
@@ -52,6 +52,13 @@ SPARE_NODES = 2
 """Intervals of a verified level beyond the number for the modes and the turn of a rod."""
 
 
+TOO_MANY_WAVES = (
+    " Coils, windings or loads ask for more than {modes} modes in an element, and at most {most} are tried: fix "
+    "accuracy.modes and accuracy.nodes, or cut the rod into shorter elements by point wrenches of zero."
+)
+"""Sentence for a rod whose waves no level resolves."""
+
+
 def nodes_for_turn(modes: int, turn: float) -> int:
     """Chebyshev intervals that resolve a rod with a number of modes and a turn.
 
@@ -87,6 +94,12 @@ def is_thin(scene: scenes.Scene) -> bool:
     return layer_nodes(scene) > nodes_for(REFERENCE_MODES[FIRST_LEVELS[0][1]])
 
 
+def told_waves(modes: int) -> str:
+    """Sentence on modes that waves need if no level resolves them and another level tells its error; else empty."""
+    most = REFERENCE_MODES[-1]
+    return TOO_MANY_WAVES.format(modes=modes, most=most) if modes > REFERENCE_MODES[-2] else ""
+
+
 def verified_modes(scene: scenes.Scene, of_short: tuple[int, ...]) -> tuple[int, ...]:
     """Modes of levels that the next level verifies; see :func:`seeing_modes`.
 
@@ -100,18 +113,23 @@ def verified_modes(scene: scenes.Scene, of_short: tuple[int, ...]) -> tuple[int,
 
 
 def seeing_modes(scene: scenes.Scene, usual: tuple[int, ...]) -> tuple[int, ...]:
-    """Modes of two levels at least that the next level verifies; all resolve the loads along the rods.
+    """Modes of two levels at least that the next level verifies; all resolve the loads and coils along the rods.
 
     Args:
         scene: the scene.
         usual: modes of the levels of a scene without waves.
     """
-    needed = signal_modes(scene)
+    needed = most_wave_modes(scene)
     if needed <= usual[0]:
         return usual
     levels = (*usual, *(modes for modes in VERIFIED_WAVES if modes > usual[-1]))
     seeing = tuple(modes for modes in levels if modes >= needed)
     return max(seeing, levels[-2:], key=len)
+
+
+def verified_nodes(scene: scenes.Scene, modes: int, turn: float) -> int:
+    """Intervals per element of a level that the next level verifies; arguments as for :func:`verified_model`."""
+    return nodes_for_turn(modes, max(turn, unloaded_turn(scene))) + SPARE_NODES
 
 
 def verified_model(scene: scenes.Scene, modes: int, turn: float) -> Model:
@@ -122,7 +140,7 @@ def verified_model(scene: scenes.Scene, modes: int, turn: float) -> Model:
         modes: per strain component and element, one of :func:`verified_modes`.
         turn: largest turn of an element on the level before, rad; 0 on the first level.
     """
-    nodes = nodes_for_turn(modes, turn) + SPARE_NODES
+    nodes = verified_nodes(scene, modes, turn)
     # Levels should differ by their modes alone: the highest order keeps the grid's error out of the comparison.
     discretisation = discretise(scene, modes, nodes, "magnus8")
     return build(scene, discretisation)
@@ -184,6 +202,10 @@ class Level:
         if index > self.finest:
             return None
         return replace(self, index=index)
+
+    def with_seeing_modes(self, modes: int) -> Level | None:
+        """The lowest higher level with modes that see the waves of a rod, and one above to compare it with, if any."""
+        return replace(self, finest=max(self.finest, _lowest_with(SIGNAL_FACTOR * modes))).with_modes(modes)
 
     def with_extrapolated_modes(self, modes: int) -> Level | None:
         """A higher level towards a number of modes that may be too large; None if none is worth a try.

@@ -36,7 +36,14 @@ from cosserat_casadi.accuracy.assess import (
 )
 from cosserat_casadi.accuracy.coarsen import Coarsening
 from cosserat_casadi.accuracy.contact import solve_contact_scene
-from cosserat_casadi.accuracy.levels import REFERENCE_MODES, Level, layer_nodes, layer_sections, nodes_for_turn
+from cosserat_casadi.accuracy.levels import (
+    REFERENCE_MODES,
+    Level,
+    layer_nodes,
+    layer_sections,
+    nodes_for_turn,
+    told_waves,
+)
 from cosserat_casadi.accuracy.resolution import TELLING, Resolution
 from cosserat_casadi.accuracy.scene_solver import SceneSolver, corrected_from
 from cosserat_casadi.equilibrium.answer_error import with_notes
@@ -50,6 +57,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise, summed_at
 from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
+from cosserat_casadi.model.required_modes import modes_for_turn
 from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.numerics.continuation import ContinuationSettings
@@ -66,8 +74,8 @@ if TYPE_CHECKING:
 LARGEST_SHAPE_ERROR = 0.1
 """Shape error, relative to the length, above which a discretisation fixed by the user is reported as UNRESOLVED."""
 
-COARSENING_SHARES = (0.85, 0.35)
-"""Shares of the tolerance for coarsening, one try after the other."""
+COARSENINGS = ((0.85, False), (0.35, False), (0.85, True))
+"""Shares of the tolerance for coarsening, and whether pairs of strains keep equal modes; one try after the other."""
 
 DECIDING_TOLERANCE = 1e-5
 """Tolerance of the solution that decides which equilibrium of a held rod is computed, for every wanted tolerance."""
@@ -244,7 +252,9 @@ def _with_tolerance(solver: SceneSolver) -> Solution:
     if solver.signal_modes > REFERENCE_MODES[-1]:
         # Not even the finest level resolves the scene's data: no solution can be a reference.
         solution = _at_level(solver, Level.first(solver.tolerance), None)
-        return solution.unresolved() if solution.converged else solution
+        if not solution.converged:
+            return solution
+        return _with_note(solution.unresolved(), told_waves(solver.signal_modes))
     found = _of_held_rod(solver) if solver.is_held else _for_tolerance(solver, solver.tolerance)
     if isinstance(found, _Reference):
         return _coarsened(solver, found.resolution)
@@ -317,7 +327,7 @@ def _refined(
     if fewer_modes is not None:
         # The level below has a larger error than this one, by about the distance of the two.
         coarser = with_estimate(coarser, fewer_modes, factor=1.0)
-    return coarser.unresolved()
+    return _with_note(coarser.unresolved(), told_waves(modes_for_turn(largest_turn(coarser))))
 
 
 def _next_level(level: Level, verdict: Verdict) -> Level | None:
@@ -330,7 +340,7 @@ def _next_level(level: Level, verdict: Verdict) -> Level | None:
         case NeedsModes(modes, extrapolated=True):
             return level.with_extrapolated_modes(modes)
         case NeedsModes(modes):
-            return level.with_modes(modes)
+            return level.with_seeing_modes(modes)
         case NeedsFinerSums(factor):
             return level.with_finer_sums(factor)
         case NeedsFinerGrid():
@@ -353,9 +363,9 @@ def _coarsened(solver: SceneSolver, resolution: Resolution) -> Solution:
     """The cheapest solution near a reference; the reference itself if none is near enough."""
     reference = resolution.preview.reference
     reference_error = resolution.tip_error
-    for share in COARSENING_SHARES:
+    for share, as_round in COARSENINGS:
         bound = share * solver.tolerance - reference_error
-        discretisation, start = Coarsening(resolution.preview, bound, solver.wave_modes).run()
+        discretisation, start = Coarsening(resolution.preview, bound, solver.wave_modes, as_round).run()
         model = solver.build(discretisation)
         solution = corrected_from(model, start, reference.inputs)
         if solution is not None:

@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
@@ -20,13 +19,10 @@ from cosserat_casadi.equilibrium.relax import can_relax
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve, stabilised
 from cosserat_casadi.equilibrium.taut_rods import held_taut
-from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
-from cosserat_casadi.model.required_modes import SLOW_MODES, signal_modes
-from cosserat_casadi.model.scene_rods import rod_properties
-from cosserat_casadi.model.watched import SAMPLES
+from cosserat_casadi.model.required_modes import SLOW_MODES, signal_modes, unloaded_turn
 from cosserat_casadi.numerics.continuation import ContinuationSettings
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress, Report
@@ -94,12 +90,8 @@ class SceneSolver:
 
     @cached_property
     def unloaded_turn(self) -> float:
-        """Upper bound on the turn of an unloaded rod from end to end, rad."""
-        turns = []
-        for rod in self.scene.rods:
-            intrinsic = known(rod_properties(rod).intrinsic_curvature(SAMPLES))
-            turns.append(float(np.linalg.norm(intrinsic, axis=1).max()) * rod.length)
-        return max(turns)
+        """Largest turn of an element of an unloaded rod, rad."""
+        return unloaded_turn(self.scene)
 
     @cached_property
     def signal_modes(self) -> int:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.assess import min_modes
 from cosserat_casadi.accuracy.levels import verified_model, verified_modes
 from cosserat_casadi.accuracy.refine import FINER_MODES, solve
 from cosserat_casadi.equilibrium.answer_error import estimated
@@ -71,11 +72,15 @@ class LevelsOfRods:
         return verified_modes(self.scene, MODES_OF_SHORT)
 
     def finer(self, count: int, model: Model, solutions: Sequence[Solution]) -> Model:
-        """Make the model of a level, with enough intervals for the rotations of the rods on the level before."""
-        if self.scene.accuracy.fixed:
-            most = max(max(discretisation.modes) for discretisation in model.discretisation.values())
+        """Make the model of a level, with modes and intervals for the turns of the rods on the level before."""
+        turns = [largest_turn(solution) for solution in solutions]
+        tolerance = self.scene.accuracy.tolerance
+        visible_from = [min_modes(*own, tolerance) for own in zip(solutions, turns, strict=True)]
+        count = max(count, *visible_from)
+        most = max(max(discretisation.modes) for discretisation in model.discretisation.values())
+        if self.scene.accuracy.fixed or count <= most:
             count = max(count, most + FINER_MODES)
-        return verified_model(self.scene, count, max(largest_turn(solution) for solution in solutions))
+        return verified_model(self.scene, count, max(turns))
 
     def told(self, model: Model) -> str:
         """A model in words."""

@@ -88,6 +88,15 @@ class TurnedElements:
                 modes[first + columns.start : first + columns.stop] = count
         return modes[~self.richer.known]
 
+    def turns_at(self, x: FloatArray) -> FloatArray:
+        """Bounds on the turns of all elements, shape (..., elements), rad: unloaded, plus root mean square by loads.
+
+        Args:
+            x: unknowns, shape (..., n).
+        """
+        turned_by = self.of_unknowns[:, None] == np.arange(len(self.unloaded))
+        return np.asarray(self.unloaded + np.sqrt((self.turns * x) ** 2 @ turned_by))
+
     def hide_waves(self, x: FloatArray, missing: FloatArray) -> bool:
         """Whether an element turns so far that the missing modes, which are not zero, cannot show the waves along it.
 
@@ -96,10 +105,7 @@ class TurnedElements:
             missing: coordinates of the missing modes, shape (missing,).
         """
         tolerance = self.richer.coarse.scene.accuracy.tolerance
-        for element, unloaded in enumerate(self.unloaded):
-            own = self.of_unknowns == element
-            # The turn is bounded by the unloaded turn plus the root mean square turn by loads.
-            turn = unloaded + float(np.linalg.norm(self.turns[own] * x[own]))
+        for element, turn in enumerate(self.turns_at(x)):
             blind = (self.of_missing == element) & (self.modes_of_missing < turn / 2 + BEYOND)
             if turn > WHOLE_TURN and np.linalg.norm(missing[blind]) > UNSEEN * tolerance:
                 return True

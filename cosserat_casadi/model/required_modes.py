@@ -136,6 +136,11 @@ def seeing_modes(scene: scenes.Scene, rod: str) -> int:
     return waves if waves <= SLOW_MODES else WAVES_FACTOR * waves
 
 
+def most_wave_modes(scene: scenes.Scene) -> int:
+    """Modes that see what the scene and the turns of its unloaded rods put along any rod."""
+    return max(signal_modes(scene), modes_for_turn(unloaded_turn(scene)))
+
+
 def wave_modes(scene: scenes.Scene, rod: str) -> int:
     """Modes of every strain of a rod that see what its scene and its own turns put along it.
 
@@ -143,9 +148,22 @@ def wave_modes(scene: scenes.Scene, rod: str) -> int:
     up to about the degree T/2.
     """
     record = next(record for record in scene.rods if record.name == rod)
-    turn = max(unloaded_turns(record, element_ends(scene, rod)))
-    of_turn = ceil(turn / 2) + BEYOND if turn > 2 * np.pi else 0
-    return max(signal_modes(scene), of_turn)
+    return max(signal_modes(scene), modes_for_turn(_turn_of_rod(scene, record)))
+
+
+def modes_for_turn(turn: float) -> int:
+    """Modes whose last coefficients show waves along an element that turns by an angle, rad; 0 within one turn."""
+    return ceil(turn / 2) + BEYOND if turn > 2 * np.pi else 0
+
+
+def unloaded_turn(scene: scenes.Scene) -> float:
+    """Largest angle through which sections turn along an element of an unloaded rod, summed, rad."""
+    return max(_turn_of_rod(scene, record) for record in scene.rods)
+
+
+def _turn_of_rod(scene: scenes.Scene, record: scenes.Rod) -> float:
+    """Largest angle through which sections turn along an element of one unloaded rod, summed, rad."""
+    return max(unloaded_turns(record, element_ends(scene, record.name)))
 
 
 @lru_cache(maxsize=64)

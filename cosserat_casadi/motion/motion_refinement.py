@@ -18,11 +18,15 @@ from pathlib import Path
 
 import numpy as np
 
-from cosserat_casadi.accuracy.levels import SPARE_NODES, verified_modes
+from cosserat_casadi.accuracy.levels import verified_modes, verified_nodes
 from cosserat_casadi.accuracy.refine import FINER_MODES
+from cosserat_casadi.equilibrium.blindness import TurnedElements
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.discretise import discretise, nodes_for
+from cosserat_casadi.model.discrete_scene import Richer
+from cosserat_casadi.model.discretise import discretise
+from cosserat_casadi.model.function_table import kept_with
+from cosserat_casadi.model.required_modes import modes_for_turn, wave_modes
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.fall_of_errors import FAR_APART, hangs_on_rounding, impacts_of, is_struck
 from cosserat_casadi.motion.felt_modes import (
@@ -58,15 +62,15 @@ from cosserat_casadi.motion.simulate import (
     factor_for,
     judged,
     left_by,
-    motion_of,
     not_started,
     started,
     tolerance_of,
+    whole_but_interrupted,
 )
 from cosserat_casadi.motion.simulate import simulate as simulate_model
 from cosserat_casadi.motion.sudden_loads import is_sudden
-from cosserat_casadi.motion.tip_paths import Paths, path_distance
-from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
+from cosserat_casadi.motion.tip_paths import Paths, path_distance, watched_states
+from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.numerics.integration import StepOutcome
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene
@@ -193,6 +197,7 @@ class ResolvedMotion:
         waves: whether sudden loads send waves along rods without damping.
         fronts: missing displacement at the fronts of these waves, over the length.
         step_tolerance: tolerance of a step, over the length; nan for steps of given size.
+        turn: bound on the largest turn of an element along the motion, rad.
     """
 
     simulator: Simulator
@@ -205,6 +210,12 @@ class ResolvedMotion:
     waves: bool = False
     fronts: float = 0.0
     step_tolerance: float = float("nan")
+    turn: float = 0.0
+
+    @property
+    def is_blind(self) -> bool:
+        """Whether an element turns so far that the modes, and those of the level before, may miss waves along it."""
+        return modes_for_turn(self.turn) > self.modes
 
 
 @dataclass
@@ -265,7 +276,7 @@ class _Search:
 
         For strains that keep their modes, the last coefficients bound the error.
         """
-        if not np.isfinite(self.last.distance):
+        if not np.isfinite(self.last.distance) or self.last.is_blind:
             return float("inf")
         return self.foreseen(self.last.modes, self.order)
 
@@ -294,6 +305,9 @@ class _Search:
         """Choose the next rung, as far up as seems to be needed; None if the last rung would not suffice."""
         rung = self.last.rung
         last = len(self.ladder) - 1
+        if self.last.is_blind:
+            needed = modes_for_turn(self.last.turn)
+            return next((higher for higher in range(rung, last + 1) if self.ladder[higher] >= needed), None)
         if rung == last:
             return None
         if len(self.levels) < 3:
@@ -466,8 +480,11 @@ def _with_fixed(search: _Search, model: Model) -> Motion:
         return ended_early(simulator, timed.history)
     level = _with_waves(search, ResolvedMotion(simulator, timed.history, simulator.paths(timed.history)))
     search.levels.append(level)
+    if timed.is_interrupted:
+        raise KeyboardInterrupt
 
-    finer = {name: _finer(discretisation) for name, discretisation in model.discretisation.items()}
+    turn = _largest_turn(timed.history, search.simulation.duration)
+    finer = {name: _finer(scene, name, own, turn) for name, own in model.discretisation.items()}
     witness = _simulator(search, moving_model(scene, finer), "with a few modes more, for the error")
     space_error = float("inf")
     if witness.start.found:
@@ -485,7 +502,7 @@ def _with_fixed(search: _Search, model: Model) -> Motion:
         modes = most_modes(model.discretisation)
         left = SAFETY
         if struck or level.waves:
-            left = told_by_modes(modes, modes + FINER_MODES, UNKNOWN_ORDER if struck else ORDER_OF_WAVES)
+            left = told_by_modes(modes, most_modes(finer), UNKNOWN_ORDER if struck else ORDER_OF_WAVES)
         if history.completed:
             space_error = max(left * path_distance(level.paths, witness.paths(history)), level.fronts)
     companions = timed.companions
@@ -494,9 +511,14 @@ def _with_fixed(search: _Search, model: Model) -> Motion:
     return _judged(search, level, space_error + timed.error, companions)
 
 
-def _finer(discretisation: Discretisation) -> Discretisation:
-    modes = tuple(count + FINER_MODES for count in discretisation.modes)
-    return replace(discretisation, modes=modes, nodes=discretisation.nodes + 2 * FINER_MODES)
+def _finer(scene: Scene, name: str, own: Discretisation, turn: float) -> Discretisation:
+    """The discretisation of a rod with a few modes more, or as many as its waves and turns ask for."""
+    seeing = max(wave_modes(scene, name), modes_for_turn(turn))
+    modes = tuple(max(count + FINER_MODES, seeing) for count in own.modes)
+    nodes = own.nodes + 2 * FINER_MODES
+    if seeing > min(own.modes) + FINER_MODES:
+        nodes = max(nodes, verified_nodes(scene, seeing, turn))
+    return replace(own, modes=modes, nodes=nodes)
 
 
 def _with_tolerance(search: _Search, first: Model) -> Motion:
@@ -534,7 +556,10 @@ def _with_tolerance(search: _Search, first: Model) -> Motion:
             return ended_early(simulator, history)
         found = simulator.paths(history)
         distance = path_distance(search.last.paths, found) if search.levels else float("inf")
-        level = ResolvedMotion(simulator, history, found, rung, modes, distance, unseen, step_tolerance=step_tolerance)
+        turn = _largest_turn(history, search.simulation.duration)
+        level = ResolvedMotion(
+            simulator, history, found, rung, modes, distance, unseen, step_tolerance=step_tolerance, turn=turn
+        )
         search.levels.append(_with_waves(search, level))
         if step_tolerance < search.step_tolerance and search.space_error > SPACE_SHARE * search.tolerance:
             search.levels[-1] = _with_steps_of_others(search)
@@ -556,7 +581,7 @@ def _with_tolerance(search: _Search, first: Model) -> Motion:
             return _given_up(search, CHATTERS.format(**search.told, foreseen=search.foreseen_impacts))
         rung = search.climb()
     timed = timed or _timed(search)
-    if timed.history.outcome is StepOutcome.INTERRUPTED:
+    if timed.is_interrupted:
         raise KeyboardInterrupt
     if not timed.history.completed:
         return ended_early(search.last.simulator, timed.history)
@@ -664,7 +689,7 @@ def _given_up(search: _Search, why: str) -> Motion:
     level = search.last
     if level.waves and np.isfinite(search.step_tolerance) and not is_struck(level.history):
         timed = level.simulator.tightened(level.history, level.step_tolerance, lambda _: np.inf)
-        if timed.history.outcome is StepOutcome.INTERRUPTED:
+        if timed.is_interrupted:
             raise KeyboardInterrupt
         if timed.history.completed:
             _tell_fronts(search, timed.history)
@@ -689,7 +714,7 @@ def _on_level(search: _Search, simulator: Simulator, modes: int) -> tuple[Histor
         search.step_tolerance = _first_step_tolerance(search)
     elif len(search.levels) == TOLD_AFTER and not given:
         told = search.last.simulator.tightened(search.last.history, search.last.step_tolerance, lambda _: np.inf)
-        if told.history.outcome is StepOutcome.INTERRUPTED:
+        if told.is_interrupted:
             raise KeyboardInterrupt
         search.time_error = told.error
         wanted = TIME_SHARE * search.tolerance
@@ -790,9 +815,16 @@ def _simulator(search: _Search, model: Model, stage: str) -> Simulator:
     return Simulator(model, search.simulation, began, stage, search.tell, search.source, events=search.events)
 
 
-def _uniform(scene: Scene, modes: int) -> dict[str, Discretisation]:
-    """Discretisation of every rod with one number of modes for all strains."""
-    return discretise(scene, modes, nodes_for(modes) + SPARE_NODES)
+def _largest_turn(history: History, duration: float) -> float:
+    """Bound on the largest turn of an element along a motion, rad."""
+    discrete = history.model.discrete
+    elements = kept_with(history.model, "_turned_elements", lambda: TurnedElements(Richer(discrete, discrete)))
+    return float(elements.turns_at(watched_states(history, duration).x).max())
+
+
+def _uniform(scene: Scene, modes: int, turn: float = 0.0) -> dict[str, Discretisation]:
+    """Discretisation of every rod with one number of modes for all strains, for elements that turn by an angle, rad."""
+    return discretise(scene, modes, verified_nodes(scene, modes, turn))
 
 
 def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation] | None, float]:
@@ -806,6 +838,9 @@ def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation] 
         keep their modes, over the length.
     """
     history = search.last.history
+    uniform = _uniform(search.scene, modes, search.last.turn)
+    if search.last.is_blind:
+        return uniform, 0.0
     moved_by = felt(history, search.simulation.duration)
     # Sections find contact, and more modes have more of them.
     if not search.scene.has_contact:
@@ -816,7 +851,7 @@ def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation] 
     front_is_felt = FELT_AT_FRONTS * SPACE_SHARE * search.tolerance
     chosen = {}
     unseen = 0.0
-    for name, discretisation in _uniform(search.scene, modes).items():
+    for name, discretisation in uniform.items():
         counts = []
         coarse = search.last.simulator.model.discretisation[name]
         for strain, count in enumerate(discretisation.modes):
@@ -854,7 +889,7 @@ def _interrupted(search: _Search) -> Motion:
     """Return the finest motion that was computed to its end before the search was interrupted."""
     level = search.last
     error = search.space_error + search.time_error
-    told = f": its estimated error is {error:.2g} of the length."
+    told = ""
     controlled = np.isfinite(search.step_tolerance)
     if np.isfinite(search.space_error) and controlled and not np.isfinite(search.time_error):
         # Nothing was compared that tells it of this motion; steps of given size have no share of the tolerance.
@@ -864,6 +899,4 @@ def _interrupted(search: _Search) -> Motion:
         told = f": {modes}, its steps about {foreseen:.2g} if their errors are as small as those of similar motions."
     elif not np.isfinite(error):
         error = float("nan")
-        told = ", and its error is not known."
-    message = f"{MotionOutcome.INTERRUPTED.value} The motion is whole, but not as exact as was asked{told}"
-    return motion_of(level.simulator, level.history, MotionOutcome.INTERRUPTED, error, message)
+    return whole_but_interrupted(level.simulator, level.history, error, told)

@@ -187,6 +187,7 @@ class TimedHistory:
         companion: the motion by which the error was estimated; None if it was not estimated.
         distance: distance of the paths from those of the companion, over the length; nan without one.
         earlier: motion that was compared with the companion, if impacts with friction need a third one.
+        cut_short: whether a more exact motion was interrupted, which would have told the error, or a smaller one.
     """
 
     history: History
@@ -195,6 +196,12 @@ class TimedHistory:
     companion: Companion | None = None
     distance: float = float("nan")
     earlier: Companion | None = None
+    cut_short: bool = False
+
+    @property
+    def is_interrupted(self) -> bool:
+        """Whether the motion, or a more exact one, was interrupted."""
+        return self.cut_short or self.history.outcome is StepOutcome.INTERRUPTED
 
     @property
     def companions(self) -> list[Companion | None]:
@@ -353,10 +360,14 @@ class Simulator:
                 break
             finer = self.finer(timed, factor, fine)
             fine = None
-            if finer.history.outcome not in (StepOutcome.COMPLETED, StepOutcome.INTERRUPTED) and timed.companion:
+            if finer.history.outcome is StepOutcome.INTERRUPTED:
+                return replace(timed, cut_short=True)
+            if finer.history.outcome is not StepOutcome.COMPLETED and timed.companion:
                 # The error of the last whole motion is known.
                 break
             timed = finer
+            if timed.cut_short:
+                break
             distance = timed.distance
             tolerance = tolerance_of_paths(timed.history)
             if timed.error <= tolerance or hangs_on_rounding(timed.history, distance, before, tolerance):
@@ -417,7 +428,8 @@ class Simulator:
         distance = path_distance(history_paths, self.paths(shorter))
         left = self.fall.factor(history, shorter)
         error = self.fall.error(history, history_paths, left * distance, 0.0) if shorter.completed else float("nan")
-        return TimedHistory(history, error, step_tolerance, Companion(shorter, left), distance)
+        cut_short = shorter.outcome is StepOutcome.INTERRUPTED
+        return TimedHistory(history, error, step_tolerance, Companion(shorter, left), distance, cut_short=cut_short)
 
     def halved(self, tolerance: float, begun: History | None = None) -> TimedHistory:
         """Compute the motion with equal steps that are halved until the paths of two motions agree to a tolerance.
@@ -435,6 +447,7 @@ class Simulator:
         distance = 0.0 if begun else float("nan")
         companion = earlier = None
         apart = 0
+        cut_short = False
         if history.outcome is StepOutcome.INTERRUPTED:
             return TimedHistory(history, float("nan"))
         for _ in range(MOST_HALVINGS):
@@ -442,7 +455,10 @@ class Simulator:
             shorter = self.stepped(size)
             # Steps too long for their equations to be solved say nothing of shorter ones.
             if shorter.outcome is StepOutcome.INTERRUPTED:
-                return TimedHistory(shorter, float("nan"))
+                if not history.completed:
+                    return TimedHistory(shorter, float("nan"))
+                cut_short = True
+                break
             shorter_paths = self.paths(shorter)
             left = self.fall.factor(shorter, history)
             if history.completed and shorter.completed:
@@ -456,7 +472,9 @@ class Simulator:
             history_paths = shorter_paths
             if error <= tolerance or apart == MOST_APART:
                 break
-        return TimedHistory(history, error, companion=companion, distance=distance, earlier=earlier)
+        return TimedHistory(
+            history, error, companion=companion, distance=distance, earlier=earlier, cut_short=cut_short
+        )
 
     def _integrated(self, method: Collocation, settings: StepSettings) -> History:
         pieces = self.moving.pieces(self.simulation.duration)
@@ -586,6 +604,8 @@ def simulate(
     timed = simulator.to_tolerance(tolerance, first=tolerance)
     if not timed.history.completed:
         return ended_early(simulator, timed.history)
+    if timed.is_interrupted:
+        return replace(whole_but_interrupted(simulator, timed.history, timed.error), tolerance=None)
     bound = tolerance if asked.step is None else LARGEST_SHAPE_ERROR
     motion = judged(simulator, timed.history, timed.error, bound, timed.companions)
     # What its modes leave of the paths is not estimated, so that no tolerance of the paths is met.
@@ -738,6 +758,23 @@ def ended_early(simulator: Simulator, history: History) -> Motion:
             outcome = MotionOutcome.CONTACT_UNSETTLED
             message = f"{outcome.value} {entered}"
     return motion_of(simulator, history, outcome, float("nan"), message)
+
+
+def whole_but_interrupted(simulator: Simulator, history: History, error: float, told: str = "") -> Motion:
+    """Make the result of a motion that was computed to its end before a more exact one was interrupted.
+
+    Args:
+        simulator: the simulator that computed it.
+        history: the motion.
+        error: estimated error of the paths over the length; nan if it is not known.
+        told: end of the sentence on the error; by default with the number.
+    """
+    if not told:
+        is_known = np.isfinite(error)
+        told = f": its estimated error is {error:.2g} of the length." if is_known else ", and its error is not known."
+    outcome = MotionOutcome.INTERRUPTED
+    message = f"{outcome.value} The motion is whole, but not as exact as was asked{told}"
+    return motion_of(simulator, history, outcome, error, message)
 
 
 def motion_of(

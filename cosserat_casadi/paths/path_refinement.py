@@ -7,19 +7,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from math import ceil
+from itertools import repeat
 from typing import Any, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.levels import seeing_modes
+from cosserat_casadi.accuracy.assess import min_modes
+from cosserat_casadi.accuracy.levels import seeing_modes, verified_model
 from cosserat_casadi.equilibrium.metrics import ROUNDING, cable_distance, largest_turn, pose_distance
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.model.build import Model, build
-from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.numerics.arclength import ArcSettings
 from cosserat_casadi.numerics.progress import Progress, Report
 from cosserat_casadi.numerics.trace import PathOutcome
@@ -32,11 +32,8 @@ from cosserat_casadi.tubes.tube_solution import TubeSolution
 MODES = (6, 9, 12, 16, 21, 28, 36)
 """Modes per strain component and element, one refinement level after the other."""
 
-SPARE = 2
-"""Intervals beyond the number for the modes of an unbent rod."""
-
 SAMPLES = 12
-"""Number of points of a path whose turns determine the intervals of the next refinement level."""
+"""Number of points of a path whose turns determine the modes and intervals of the next refinement level."""
 
 SMALLEST_FACTOR = 1e-12
 """Factor of an event below which differences count absolutely."""
@@ -165,16 +162,18 @@ def _follow_refined(
         # Without a refinement there is no error estimate.
         return followed(build(scene))
     coarse: EquilibriumPath | None = None
+    turn = 0.0
+    visible_from = 0
     for level, modes in enumerate(seeing_modes(scene, MODES)):
-        turn = 0.0
-        if coarse is not None:
-            turn = _largest_turn(coarse)
-        # Chebyshev interpolation resolves 2 rad in an interval.
-        nodes = nodes_for(modes) + SPARE + ceil(turn / 2)
-        # With the rotation of highest order only the error by modes changes from level to level.
-        discretisation = discretise(scene, modes, nodes, "magnus8")
-        fine = followed(build(scene, discretisation), level)
-        if coarse is not None:
+        if modes < visible_from:
+            continue
+        fine = followed(verified_model(scene, modes, turn), level)
+        samples = _samples(fine)
+        turns = [largest_turn(sample) for sample in samples]
+        visible_from = max(map(min_modes, samples, turns, repeat(accuracy.tolerance)), default=0)
+        turn = max(turns, default=0.0)
+        # Two levels may be near each other where both are blind to a wave.
+        if coarse is not None and modes >= visible_from:
             change = path_distance(coarse, fine)
             if change <= accuracy.tolerance:
                 change = max(change, _distance_between_events(coarse, fine))
@@ -235,12 +234,9 @@ def _compared(path: EquilibriumPath) -> list[Solution]:
     return solutions + [path.event_shape(event) for event in path.events]
 
 
-def _largest_turn(path: EquilibriumPath) -> float:
-    """Largest angle through which an element turns at some points of a path, rad."""
+def _samples(path: EquilibriumPath) -> list[Solution]:
+    """Equilibria at some points of a path, whose turns determine the next level."""
     count = len(path.factor)
-    if not count:
-        return 0.0
-    samples = np.linspace(0, count - 1, SAMPLES)
     # Short paths have fewer points than samples.
-    indices = np.unique(samples.astype(int))
-    return max(largest_turn(path.solution(int(index))) for index in indices)
+    indices = np.unique(np.linspace(0, count - 1, min(SAMPLES, count)).astype(int))
+    return [path.solution(int(index)) for index in indices]

@@ -90,3 +90,18 @@ def test_tolerance_is_met_by_held_rods(seed: int, tolerances: tuple[float, ...])
         assert solution.error_estimate is not None
         truth = turned_towards(solution, solved_near(solution, true_model))
         assert pose_distance(solution, truth) <= min(tolerance, 1.01 * solution.error_estimate)
+
+
+@pytest.mark.parametrize(("seed", "most"), mostly_slow([(36, 9), (33, 15)], quick=[(36, 9)]))
+def test_a_round_rod_pushed_along_its_axis_does_not_pay_for_its_reference(seed: int, most: int) -> None:
+    """It may bend to any side: with unequal modes of its bendings one side is preferred, and no start is near it.
+
+    References have 15 and 24 modes.
+    """
+    solution = solve(drawn(seed, 1e-4))
+    bending_x, bending_y, torsion = solution.model.discretisation["rod"].modes
+    assert bending_x == bending_y <= most
+    assert torsion == 1
+    truth = turned_towards(solution, solved_near(solution, model_with(TRUE_MODES, solution)))
+    assert solution.error_estimate is not None
+    assert pose_distance(solution, truth) < solution.error_estimate < min(1e-4, 4 * pose_distance(solution, truth))

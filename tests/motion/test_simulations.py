@@ -269,6 +269,28 @@ def test_interrupted_motion_keeps_its_rows() -> None:
     assert_allclose(motion.tip().position, simulated(falling()).tip().position[: len(motion.times)], rtol=0, atol=5e-3)
 
 
+@pytest.mark.parametrize("changes", [{}, {"integrator": "gauss"}, {"step": 0.02}])
+@pytest.mark.parametrize("of_scene", [False, True])
+def test_interrupted_in_a_more_exact_motion_keeps_the_whole_one(changes: dict[str, Any], of_scene: bool) -> None:
+    """The second motion tells the error of the first: what it had computed is shorter, and is not returned."""
+    begun = 0
+    latest = 0.0
+
+    def tell(progress: MotionProgress) -> None:
+        nonlocal begun, latest
+        begun += progress.time <= latest or not begun
+        latest = progress.time
+        if begun == 2:
+            raise KeyboardInterrupt
+
+    table = falling(simulation=asked(start="unloaded", **changes))
+    motion = simulate(scene_from_dict(table) if of_scene else moving_model(table), progress=tell)
+    assert motion.outcome is MotionOutcome.INTERRUPTED
+    assert motion.times[-1] == 0.4
+    assert "The motion is whole" in motion.message and "its error is not known" in motion.message
+    assert np.isnan(motion.error_estimate)
+
+
 def test_interrupted_search_keeps_the_best_whole_motion() -> None:
     """Whoever stops the choice of modes gets the last motion computed to its end, and what is known of its error."""
     scene = falling(accuracy={}, simulation=asked(start="unloaded", tolerance=1e-4))

@@ -1,0 +1,139 @@
+"""Coils, and rods that loads roll up: paths, motions and inverse problems begin on modes that see their waves."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from cosserat_casadi import (
+    Outcome,
+    Scene,
+    Solution,
+    build,
+    discretise,
+    follow,
+    inverse,
+    scene_from_dict,
+    simulate,
+    solve,
+)
+from cosserat_casadi.equilibrium.metrics import pose_distance
+from tests.scenes import push, scene
+
+PITCH = 0.126
+"""Length of wire in a turn, m."""
+
+DENSITY = 0.0246
+"""Mass of the wire per length, kg/m."""
+
+AREA_RADIUS = 5e-4
+"""Radius of gyration of its sections about their diameters, m."""
+
+
+def coil(turns: int, **changes: Any) -> dict[str, Any]:
+    """A helical spring of steel wire, clamped at one end."""
+    return {
+        "name": "rod",
+        "length": PITCH * turns,
+        "strain": "kirchhoff",
+        "stiffness": {"bending_x": 0.16, "bending_y": 0.16, "torsion": 0.124},
+        "intrinsic": {"curvature": [0, 49.6, 4.34]},
+        "base": {"position": [0, 0, 0], "quaternion": [0.03084, 0.706434, 0.706434, 0.03084]},
+        **changes,
+    }
+
+
+def drawn(turns: int, force: list[float], tolerance: float, **changes: Any) -> Scene:
+    """A coil with a force at its tip, N."""
+    return scene(push(force=force), rods=[coil(turns)], accuracy={"tolerance": tolerance}, **changes)
+
+
+def true_error(solution: Solution) -> float:
+    """Distance of the tip from that on half again as many modes as waves along the rod ask for, over the length."""
+    turn = 2 * np.pi * solution.model.scene.rods[0].length / PITCH
+    fine = build(
+        solution.model.scene, discretise(solution.model.scene, int(turn) + 12, int(2.3 * turn) + 20, "magnus8")
+    )
+    reference = solve(fine, solution.inputs, estimate_error=False)
+    assert reference.converged
+    return pose_distance(solution, reference)
+
+
+def test_a_path_of_a_coil_knows_its_error() -> None:
+    """Of five turns six and nine modes have no equilibrium to begin at."""
+    path = follow(drawn(5, [0.0, 0.4, 0.0], 1e-2), "push.force", [0.0, 0.4, 0.0])
+    assert path.converged
+    assert path.error_estimate is not None
+    assert true_error(path.solution(-1)) < path.error_estimate <= 1e-2
+
+
+@pytest.mark.slow
+def test_a_path_of_a_rod_that_a_moment_rolls_up_knows_its_error() -> None:
+    """Twelve modes and sixteen see three fifths of their error along eight turns."""
+    straight = {"name": "rod", "length": 1.0, "strain": "planar", "stiffness": {"bending_y": 1.0}}
+    moment = [0.0, 16 * np.pi, 0.0]
+    roll = {"name": "roll", "kind": "tip_wrench", "rod": "rod", "moment": moment}
+    rolled = scene(roll, push(force=[3.0, 0.0, 0.0]), rods=[straight], accuracy={"tolerance": 1e-3})
+    path = follow(rolled, "roll.moment", moment)
+    reference = follow(build(rolled, discretise(rolled, 40, 150, "magnus8")), "roll.moment", moment)
+    assert path.error_estimate is not None
+    assert pose_distance(path.solution(-1), reference.solution(-1)) < path.error_estimate <= 1e-3
+
+
+def pulled(accuracy: dict[str, Any]) -> Scene:
+    """A coil of three turns that is pulled across its axis and let go, within the period of its axial mode."""
+    turns, period = 3, 0.0122
+    half = [0.0, 1.67, 0.0]
+    inertia = [DENSITY * AREA_RADIUS**2] * 2 + [2 * DENSITY * AREA_RADIUS**2]
+    heavy = {"linear_density": DENSITY, "rotary_inertia": inertia, "damping": {"retardation_time": 0.02 * period}}
+    wave = {"input": "push.force", "amplitude": half, "frequency": 1 / period, "wave": "one_minus_cosine"}
+    return scene_from_dict(
+        {
+            "schema": 1,
+            "rods": [coil(turns, **heavy)],
+            "loads": [push(force=[0, 0, 0])],
+            "accuracy": accuracy,
+            "motions": [wave],
+            "simulation": {"duration": period, "frames": 21, "start": "unloaded", "tolerance": 1e-2},
+        }
+    )
+
+
+@pytest.mark.parametrize("accuracy", [{}, {"modes": 4, "nodes": 30}])
+def test_a_motion_of_a_coil_knows_its_error(accuracy: dict[str, Any]) -> None:
+    """Levels from six modes on told a fifth of their error along three turns, four modes and eight told less too."""
+    motion = simulate(pulled(accuracy))
+    reference = simulate(pulled({"modes": 18, "nodes": 46}))
+    apart = np.linalg.norm(motion.tip().position - reference.tip().position, axis=1).max() / (3 * PITCH)
+    assert reference.error_estimate < 2e-3
+    assert apart < motion.error_estimate
+
+
+@pytest.mark.slow
+def test_the_inverse_of_a_coil_knows_its_error() -> None:
+    """Levels of six and nine modes do not resolve five turns."""
+    unloaded = solve(drawn(5, [0.0, 0.0, 0.0], 1e-6))
+    goal = unloaded.tip().position + np.array([2e-3, 1e-3, -1e-3])
+    target = {"kind": "position", "rod": "rod", "position": goal.tolist()}
+    found = inverse(drawn(5, [0.0, 0.0, 0.0], 1e-3, targets=[target], inputs=["push.force"]))
+    assert found.met
+    assert found.solution.error_estimate is not None
+    assert true_error(found.solution) < found.solution.error_estimate <= 1e-3
+
+
+@pytest.mark.slow
+def test_an_equilibrium_of_twenty_five_turns_is_found() -> None:
+    """They ask for 81 modes, more than the 64 of the finest level of other scenes."""
+    found = solve(drawn(25, [0.4, 0.0, 0.0], 1e-3))
+    assert found.converged
+    assert found.error_estimate is not None
+    assert true_error(found) < found.error_estimate <= 1e-3
+
+
+def test_a_coil_that_no_level_resolves_says_what_it_asks_for() -> None:
+    """45 turns ask for 144 modes; the remedy that is told serves them (45 turns in five elements take seconds)."""
+    found = solve(drawn(45, [0.2, 0.0, 0.0], 1e-3))
+    assert found.outcome is Outcome.UNRESOLVED
+    assert "ask for more than 144 modes" in found.message
