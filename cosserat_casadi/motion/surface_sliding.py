@@ -74,8 +74,8 @@ class SurfaceSliding:
             normal = way / ca.sqrt(ca.sumsqr(way))
             radius, other_radius = _radius(facing, section[count]), _radius(facing.other, section[count + 1])
             arm = -radius / (radius + other_radius) * way
-            own_arm = _material(rotation, arm)
-            other_arm = _material(other_rotation, way + arm)
+            own_arm = material_arm(rotation, arm)
+            other_arm = material_arm(other_rotation, way + arm)
             velocity = self._velocity(centre, rotation, own_arm)
             velocity -= self._velocity(other_centre, other_rotation, other_arm)
         else:
@@ -139,7 +139,7 @@ def _radius(side: Facing, X: Matrix) -> Matrix:
     return base + X * (tip - base)
 
 
-def _material(rotation: Matrix, arm: Matrix) -> Matrix:
+def material_arm(rotation: Matrix, arm: Matrix) -> Matrix:
     """Components of an arm along the directors, 3×1, m.
 
     Interpolated directors are orthogonal only up to the error of polynomials, so they are inverted: otherwise forces at
