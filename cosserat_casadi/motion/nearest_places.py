@@ -114,7 +114,11 @@ class NearestPlaces:
         bends = ca.hessian(gap, places)[0] if last else ca.hessian(ca.sumsqr(apart) / 2, places)[0] / (distance * length)
         straight = ways.T @ ways / (distance * length)
         step = _bounded_step()(places, self._arguments[3], ca.gradient(gap, places), bends, straight)
-        return ca.Function("turn", [*self._arguments, places], ca.cse([step])).expand()
+        turn = ca.Function(f"turn_{self.number}", [*self._arguments, places], ca.cse([step])).expand()
+        if last:
+            return turn
+        symbols = turn.sx_in()
+        return ca.Function(turn.name(), symbols, turn.call(symbols), KEPT)
 
     @cached_property
     def _search(self) -> ca.Function:
