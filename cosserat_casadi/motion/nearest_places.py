@@ -111,7 +111,9 @@ class NearestPlaces:
         distance = ca.sqrt(ca.sumsqr(apart) + (COINCIDENT * length) ** 2)
         gap = (distance - sum(self._radius(k, places[k]) for k in range(2))) / length
         ways = ca.jacobian(apart, places)
-        bends = ca.hessian(gap, places)[0] if last else ca.hessian(ca.sumsqr(apart) / 2, places)[0] / (distance * length)
+        bends = (
+            ca.hessian(gap, places)[0] if last else ca.hessian(ca.sumsqr(apart) / 2, places)[0] / (distance * length)
+        )
         straight = ways.T @ ways / (distance * length)
         step = _bounded_step()(places, self._arguments[3], ca.gradient(gap, places), bends, straight)
         turn = ca.Function(f"turn_{self.number}", [*self._arguments, places], ca.cse([step])).expand()

@@ -327,7 +327,9 @@ class TouchingPairs:
         slide = along_surface(speeds[0] - speeds[1], normal)
         held = -force * touching.against.coefficients[0] * slide / ca.sqrt(ca.sumsqr(slide) + creep**2)
         pulls = [ca.vertcat(pull, ca.vec(pull @ arm.T)) for pull, arm in zip((held, -held), materials, strict=True)]
-        return ca.Function("drag_of_rods", [poses, rates, radii, force, creep], [ca.cse(ca.densify(ca.vertcat(*pulls)))])
+        return ca.Function(
+            "drag_of_rods", [poses, rates, radii, force, creep], [ca.cse(ca.densify(ca.vertcat(*pulls)))]
+        )
 
     def _poses(self, system: System, touching: TouchingSections, places: Matrix | None) -> Matrix:
         """Positions of sections, or of a body, and their rotations, in the axes of the obstacle, 12×k.

@@ -9,10 +9,10 @@ Forces and gaps are those of the exact law: a section is a contact at a point, w
 and the abscissae of the sections are parameters of the equations. As ε goes to zero each section obeys the exact law;
 rods may enter obstacles between sections, so that touching sections are moved to the places of the exact contacts.
 
-Two rods that touch have one pair, at a section of either whose abscissae s are unknowns too: the gap is least there, but
-for a barrier that keeps the sections between the ends of their rods,
+Two rods that touch have one pair, at a section of either whose abscissae s follow from unknowns y of any size: the gap
+is least there, but for a barrier that keeps the sections off the ends of their rods,
 
-    ∂g/∂s − b/s + b/(1 − s) = 0,    b = ε²/2 and a rest that keeps elements from vanishing.
+    s = (1 + y/√(1 + y²))/2,    ∂g/∂s − b/s + b/(1 − s) = 0,    b = ε²/2 and a rest that keeps elements from vanishing.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.cable_length import pair_kernel
 from cosserat_casadi.equilibrium.contact.contact_equations import BehindPlaces, ContactEquations, Grids
 from cosserat_casadi.equilibrium.contact.contact_search import contact_equilibrium
@@ -68,7 +69,7 @@ NODES = 4
 """Intervals of the integration between two sections."""
 
 LAST_BARRIER = SHORTEST / 2
-"""Barrier b without smoothing: an end that points across the other rod by half a right angle is this close to a section."""
+"""Barrier b without smoothing: an end on which a gap of the slope 1/2 presses a section keeps SHORTEST from it."""
 
 FIRST_SMOOTHING = 1e-2
 """First smoothing ε: gap times force is 5e-5 in units of the length and of EI/ℓ²."""
@@ -76,9 +77,10 @@ FIRST_SMOOTHING = 1e-2
 
 @dataclass(frozen=True)
 class RelaxedContact:
-    """A scene in exact contact as functions of its unknowns z = (x, N, s), its inputs, and p = (ε, abscissae).
+    """A scene in exact contact as functions of its unknowns z = (x, N, y), its inputs, and p = (ε, abscissae).
 
-    Behind the forces stand the abscissae s at which rods touch rods; those of p are of sections that touch obstacles.
+    Behind the forces stand the numbers y of the abscissae at which rods touch rods; those of p are of sections that
+    touch obstacles.
 
     Attributes:
         model: the model of the scene, with the modes for exact contacts.
@@ -116,7 +118,8 @@ class RelaxedContact:
     def _places(self, z: FloatArray, p: FloatArray) -> FloatArray:
         """All places of the state."""
         places = np.empty(len(self._sought))
-        places[self._sought] = z[len(z) - int(self._sought.sum()) :]
+        numbers = z[len(z) - int(self._sought.sum()) :]
+        places[self._sought] = (1 + numbers / np.sqrt(1 + numbers**2)) / 2
         places[~self._sought] = p[1:]
         return places
 
@@ -187,7 +190,7 @@ class RelaxedContact:
         return relaxed.x if relaxed.outcome is Outcome.CONVERGED else start
 
     def _touching(self, solution: Solution) -> FloatArray:
-        """Where rods touch rods in a solution, or are nearest to each other, shape (places of rods,)."""
+        """Numbers y of where rods touch rods in a solution, or are nearest to each other, shape (places of rods,)."""
         known = {(contact.owner, contact.obstacle): contact.on_rods for contact in solution.contacts}
         places: list[float] = []
         for touch in self.equations.state.touches:
@@ -197,7 +200,8 @@ class RelaxedContact:
             if at is None:
                 at = min(RodsApart.of(solution, (touch.owner, touch.obstacle)).valleys, key=lambda own: own.gap).places
             places += at
-        return np.clip(np.array(places), AT_END, TIP - AT_END)
+        offsets = 2 * np.clip(np.array(places), AT_END, TIP - AT_END) - 1
+        return np.asarray(offsets / np.sqrt(1 - offsets**2))
 
     def solution(self, z: FloatArray, inputs: FloatArray, p: FloatArray) -> Solution:
         """The shape of unknowns z as a solution that is not judged, with a contact at every section."""
@@ -327,15 +331,16 @@ class _Written:
             stiffness = barrier / at_sections**2 + barrier / (1 - at_sections) ** 2
             jacobian.append(whole[slopes, :] + ca.horzcat(ca.MX(len(sought), size + count), ca.diag(stiffness)))
         expressions = [ca.vertcat(*residual), ca.vertcat(*jacobian), *at]
-        spans = [0, size, size + count, z.shape[0]]
-        own, pushes, moved = ca.vertsplit(z, spans) if sought else (*ca.vertsplit(z, spans[:-1]), ca.MX(0, 1))
+        own, pushes, numbers = ca.vertsplit(z, [0, size, size + count, z.shape[0]])
         new_smoothing, fixed = ca.vertsplit(p, [0, 1, p.shape[0]])
-        old = [x, forces, smoothing, places]
-        new = [own, pushes, new_smoothing, fixed]
+        new_places = fixed
         if sought:
-            all_places = ca.MX(places.shape[0], 1)
-            all_places[sought], all_places[given] = moved, fixed
-            new[-1] = all_places
+            new_places = ca.MX(places.shape[0], 1)
+            new_places[sought], new_places[given] = (1 + numbers / ca.sqrt(1 + numbers**2)) / 2, fixed
+            by_numbers = 1 / (2 * ca.sqrt(1 + numbers**2) ** 3)
+            expressions[1] = expressions[1] @ ca.diag(ca.vertcat(ca.DM.ones(size + count), by_numbers))
+        old = [x, forces, smoothing, places]
+        new = [own, pushes, new_smoothing, new_places]
         residual, jacobian, *at = ca.graph_substitute(expressions, old, new)
         return cls(z, written.given, p, at, residual, jacobian)
 
@@ -447,4 +452,6 @@ def _crowded(scene: scenes.Scene) -> Iterator[Problem]:
                 others += ["a load or a rod between its ends"] * bool(loads[name])
                 if others:
                     problem = f"the place at which {name!r} touches a rod would have to pass others: it has {others[0]}"
-                    yield Problem(f"rod_contacts[{number}].exact", problem, "leave exact out, for a contact that is smooth")
+                    yield Problem(
+                        f"rod_contacts[{number}].exact", problem, "leave exact out, for a contact that is smooth"
+                    )
