@@ -65,7 +65,8 @@ class NearestPlaces:
         series = [ca.repmat(ca.vec(self._series(rod)), 1, count) for rod in self.rods]
         given = [*series, ca.repmat(self._p, 1, count), bounds]
         found = self._search.map(count)(*given)
-        return self._turn(last=True).map(count)(*given, found)
+        places: Matrix = self._turn(last=True).map(count)(*given, found)
+        return places
 
     def _series(self, rod: str) -> Matrix:
         """Coefficients of the Chebyshev series of the centres in each element of a rod, 3×M, m."""
@@ -96,7 +97,8 @@ class NearestPlaces:
         return sum(parts[1:], parts[0])
 
     def _radius(self, k: int, X: Matrix) -> Matrix:
-        return RodSurface(self.system, self.rods[k]).radius(X)
+        radius: Matrix = RodSurface(self.system, self.rods[k]).radius(X)
+        return radius
 
     def _turn(self, *, last: bool) -> ca.Function:
         """(own, other, p, bounds, places) ↦ places after a step of Newton's method.
@@ -144,7 +146,8 @@ class NearestPlaces:
         radii = ca.horzcat(*[self._radius(1, place) for place in X.tolist()])
         columns = [ca.vertcat(self._centre(0, look), self._radius(0, look), look) for look in looks]
         least = _least(LOOKS, OTHER_LOOKS)
-        return least(ca.horzcat(*columns), ca.vertcat(others, radii, ca.DM(X).T))
+        places: Matrix = least(ca.horzcat(*columns), ca.vertcat(others, radii, ca.DM(X).T))
+        return places
 
 
 def _least(count: int, others: int) -> ca.Function:

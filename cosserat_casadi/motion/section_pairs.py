@@ -230,7 +230,7 @@ class TouchingPairs:
             at = ca.MX.sym("at", self.model.size)
             given = [at, ca.MX.sym("inputs", inputs.shape[0])]
             given += [ca.MX.sym(PARAMETERS, each.shape[0]) for each in self._parameters(p)]
-            given += [ca.MX.sym("places", places.shape) for places in self._place_symbols(group)]
+            given += [ca.MX.sym("places", *places.shape) for places in self._place_symbols(group)]
             weights = ca.MX.sym("weights", function.size1_out(0))
             push = ca.densify(ca.jtimes(function(*given), at, weights, True))
             pushed = ca.Function("push", [*given, weights], [push])
@@ -484,7 +484,7 @@ class TouchingPairs:
                 for rod in _rods(touching)
             ]
             own, other = of_rods[0], float(of_rods[1].min()) * self._length(touching) / self._length_of(touching.other)
-            return own * other / (own + other)
+            return np.asarray(own * other / (own + other))
         nominal = self._nominal
         at = nominal.unloaded(), nominal.pack()
         written = expressions_of(nominal, ("x", "inputs"), "")

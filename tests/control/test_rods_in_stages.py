@@ -131,6 +131,7 @@ def test_a_blow_tends_to_that_of_the_simulator(share: float, friction: float) ->
     assert errors[1] < 0.5 * errors[0] < 3e-4
 
 
+@pytest.mark.slow
 def test_relaxed_contact_of_rods_tends_to_the_exact_law() -> None:
     model = build(scene_from_dict(pressed([0, 0, -1e-3], BELOW, accuracy={"modes": 3, "nodes": 8})))
     exact = solve(model)
