@@ -133,13 +133,9 @@ def section_weights(discrete: DiscreteScene, rod: str, X: Sequence[float]) -> Ma
 def element_holds(grid: Grid, element: int, X: Matrix) -> Matrix | int:
     """1 where X lies in the element, which owns its tip-side end, else 0."""
     breaks = grid.places
-    above: Matrix | int = 1
-    below: Matrix | int = 1
     # The polynomials of the first and the last element extrapolate beyond the ends of the rod.
-    if element > 0:
-        above = breaks[element] < X
-    if element + 2 < len(breaks):
-        below = breaks[element + 1] >= X
+    above: Matrix | int = breaks[element] < X if element > 0 else 1
+    below: Matrix | int = breaks[element + 1] >= X if element + 2 < len(breaks) else 1
     return above * below
 
 

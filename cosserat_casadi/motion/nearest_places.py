@@ -101,10 +101,10 @@ class NearestPlaces:
         return radius
 
     def _turn(self, *, last: bool) -> ca.Function:
-        """(own, other, p, bounds, places) ↦ places after a step of Newton's method.
+        """(first series, second series, p, bounds, places) ↦ places after a step of Newton's method.
 
-        The steps are those for half the squared distance, whose bends serve far from the bottom too; the last one has
-        those of the gap.
+        The steps have the bends of half the squared distance, which serve far from the bottom too; the last one has
+        the bends of the gap.
         """
         places = ca.MX.sym("places", 2)
         centres = [self._centre(k, places[k]) for k in range(2)]
@@ -126,7 +126,7 @@ class NearestPlaces:
 
     @cached_property
     def _search(self) -> ca.Function:
-        """(own, other, p, bounds) ↦ places, but for the last step, which has their derivatives."""
+        """(first series, second series, p, bounds) ↦ places before the last step, which has their derivatives."""
         places = self._first
         turn = self._turn(last=False)
         for _ in range(TURNS - 1):
@@ -137,7 +137,7 @@ class NearestPlaces:
 
     @cached_property
     def _first(self) -> Matrix:
-        """The places whose gap is least of those that are looked at first, 2×1."""
+        """The places whose gap is least among the sections that are looked at first, 2×1."""
         bounds = self._arguments[3]
         shares = np.linspace(0.0, 1.0, LOOKS)
         looks = [bounds[0] + share * (bounds[1] - bounds[0]) for share in shares.tolist()]
@@ -169,8 +169,8 @@ def _least(count: int, others: int) -> ca.Function:
 def _bounded_step() -> ca.Function:
     """(places, bounds, slopes, bends, bends of straight rods) ↦ places after a step within their bounds, 2×1.
 
-    The step goes to the least of a quadratic within the bounds. Where its bends make no valley it has those of straight
-    rods, which have no hill.
+    The step goes to the least of a quadratic within the bounds. Where its bends make no valley it has the bends of
+    straight rods, which have no hill.
     """
     places, bounds, slopes = ca.SX.sym("places", 2), ca.SX.sym("bounds", 2), ca.SX.sym("slopes", 2)
     bends, straight = ca.SX.sym("bends", 2, 2), ca.SX.sym("straight", 2, 2)

@@ -424,7 +424,9 @@ class TouchingPairs:
 
     def _radii_at(self, system: System, touching: TouchingSections, places: Matrix) -> Matrix:
         """Radii of both rods at their places, 2×k, m."""
-        return ca.vertcat(*[RodSurface(system, rod).radius(places[row, :]) for row, rod in enumerate(_rods(touching))])
+        both = [RodSurface(system, rod) for rod in _rods(touching)]
+        radii: Matrix = ca.vertcat(*[rod.radius(places[row, :]) for row, rod in enumerate(both)])
+        return radii
 
     def _gaps_of(self, system: System, touching: TouchingSections) -> Matrix:
         """Gaps of sections, or of a body, from an obstacle, over the length, k×1."""
