@@ -79,8 +79,8 @@ FIRST_SMOOTHING = 1e-2
 class RelaxedContact:
     """A scene in exact contact as functions of its unknowns z = (x, N, y), its inputs, and p = (ε, abscissae).
 
-    Behind the forces stand the numbers y of the abscissae at which rods touch rods. The abscissae in p belong to sections
-    that touch obstacles.
+    Behind the forces stand the numbers y of the abscissae at which rods touch rods. The abscissae in p are of
+    sections that touch obstacles.
 
     Attributes:
         model: the model of the scene, with the modes for exact contacts.
