@@ -63,10 +63,12 @@ def refuse_obstacles(scene: scenes.Scene, what: str, remedy: str = WIDTH) -> Non
     Raises:
         SceneError: the scene has obstacles without a width, or rods that touch rods so.
     """
-    refuse(exact_rods(scene, what))
+    if remedy != RELAXED:
+        refuse(exact_rods(scene, what))
     if scene.touches_exactly:
         problem = f"{what} finds no exact contact: its rods would pass through them"
-        raise SceneError(Problem("obstacles", problem, remedy.format(width=suggested_width(scene))))
+        where = "rod_contacts" if scene.rods_touch_exactly else "obstacles"
+        raise SceneError(Problem(where, problem, remedy.format(width=suggested_width(scene))))
 
 
 def exact_rods(scene: scenes.Scene, what: str) -> Iterator[Problem]:

@@ -15,7 +15,8 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths import chebyshev
-from cosserat_casadi.maths.numbers import Scalar, any_symbolic
+from cosserat_casadi.maths.grid import Grid
+from cosserat_casadi.maths.numbers import any_symbolic
 from cosserat_casadi.maths.rotation import quaternion_product
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
@@ -108,13 +109,17 @@ def interpolation_weights(discrete: DiscreteScene, rod: str, X: Matrix) -> Matri
     to_coefficients = chebyshev.chebyshev_coefficients(np.eye(grid.intervals + 1))
     rows = []
     for element in range(grid.elements):
-        start, end = grid.places[element : element + 2]
-        local = (X - start) / (end - start)
-        weights = ca.DM(to_coefficients).T @ _chebyshev_values(grid.intervals, local)
+        weights = ca.DM(to_coefficients).T @ element_polynomials(grid, element, X)
         if grid.elements > 1:
-            weights = _inside(grid.places, element, X) * weights
+            weights = element_holds(grid, element, X) * weights
         rows.append(weights)
     return ca.vertcat(*rows)
+
+
+def element_polynomials(grid: Grid, element: int, X: Matrix) -> Matrix:
+    """Chebyshev polynomials of an element at X, (intervals + 1)×1; beyond its ends they go on."""
+    start, end = grid.places[element : element + 2]
+    return _chebyshev_values(grid.intervals, (X - start) / (end - start))
 
 
 def section_weights(discrete: DiscreteScene, rod: str, X: Sequence[float]) -> Matrix:
@@ -125,15 +130,12 @@ def section_weights(discrete: DiscreteScene, rod: str, X: Sequence[float]) -> Ma
     return ca.sparsify(ca.DM(grid.interpolation_matrix(np.asarray(X, dtype=float)).T))
 
 
-def _inside(breaks: tuple[Scalar, ...], element: int, X: Matrix) -> Matrix | int:
+def element_holds(grid: Grid, element: int, X: Matrix) -> Matrix | int:
     """1 where X lies in the element, which owns its tip-side end, else 0."""
-    above: Matrix | int = 1
-    below: Matrix | int = 1
+    breaks = grid.places
     # The polynomials of the first and the last element extrapolate beyond the ends of the rod.
-    if element > 0:
-        above = breaks[element] < X
-    if element + 2 < len(breaks):
-        below = breaks[element + 1] >= X
+    above: Matrix | int = breaks[element] < X if element > 0 else 1
+    below: Matrix | int = breaks[element + 1] >= X if element + 2 < len(breaks) else 1
     return above * below
 
 

@@ -22,9 +22,9 @@ from cosserat_casadi.errors import Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import PARAMETERS
-from cosserat_casadi.model.obstacle_checks import exact_rods
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.constraint_projection import Closing
+from cosserat_casadi.motion.contact_checks import unfit_rods
 from cosserat_casadi.motion.motion_checks import immovable
 from cosserat_casadi.motion.section_pairs import SECTIONS, TouchingPairs
 from cosserat_casadi.numerics.collocation import STAGES, Collocation, radau
@@ -335,7 +335,7 @@ def motion_stage(
 
     Raises:
         SceneError: a rod has no mass, the duration is not positive, the method does not suit the constraints, or
-            exact contact, or rods touch rods exactly.
+            exact contact, or rods that touch rods exactly are too thin or hang together.
     """
     exact = model.scene.touches_exactly
     chosen = method or radau(1 if exact else STAGES)
@@ -348,7 +348,7 @@ def motion_stage(
     if exact and not (chosen.stages == 1 and chosen.stiffly_accurate):
         what = f"{chosen.name} throws rods and bodies back that meet an obstacle without restitution"
         problems.append(Problem("method", what, "take radau(1), or give each obstacle a width, m"))
-    problems += exact_rods(model.scene, "a stage of a motion")
+    problems += unfit_rods(model)
     if sections < 1:
         problems.append(Problem("sections", f"must be 1 or more, got {sections}", f"take {SECTIONS}"))
     refuse(problems)

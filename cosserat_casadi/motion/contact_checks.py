@@ -43,7 +43,7 @@ def untouchable(model: Model, simulation: Simulation | None) -> Iterator[Problem
     if simulation is not None and simulation.integrator == "gauss":
         yield Problem("simulation.integrator", "'gauss' does not converge for exact contact", "use 'radau'")
     remedy = "give each obstacle a width, m, for a contact that is smooth"
-    yield from _unfit_pairs(model)
+    yield from unfit_rods(model)
     yield from _too_thin(model)
     # Bodies that stand for rows of disks are rows again where the contact is smooth.
     disks = [body for body, _ in body_pairs(model.scene) if body.thickness is not None]
@@ -58,7 +58,7 @@ def untouchable(model: Model, simulation: Simulation | None) -> Iterator[Problem
             yield Problem("obstacles", what, remedy if of_rows else balls)
 
 
-def _unfit_pairs(model: Model) -> Iterator[Problem]:
+def unfit_rods(model: Model) -> Iterator[Problem]:
     """Problems of rods that touch rods exactly and whose ends coincide with others: that point would touch twice."""
     met = {end.rod for ends in meetings(model.scene) for end in ends}
     for contact, rods in named_pairs(model.scene):

@@ -318,12 +318,18 @@ class ExactContacts:
             stopped = after.held_still((*struck.staying, *soon_back))
             lost += after.kinetic() - stopped.kinetic()
             after = stopped
-        if jerked:
-            off = [touch for touch in leaving if touch in touching[: len(known.held)] and touch not in soon_back]
-            events += [self._event("lift_off", onset.before.time, touch) for touch in off]
         pressing = after.pressing(self._on_sections((*staying, *soon_back), laid))
         if pressing is None:
             return self._stopped(onset, known, touching)
+        # A jerk takes contacts off, and over an end a section may leave at once.
+        at_end = any(event.kind == "slide_to_end" for event in known.events)
+        off = [
+            touch
+            for touch in touching[: len(known.held)]
+            if touch not in pressing
+            and (touch in leaving if jerked else at_end and not touch.slides and touch.facing not in laid)
+        ]
+        events += [self._event("lift_off", onset.before.time, touch) for touch in off]
         arrangement = ContactPhase(
             pressing,
             laid,

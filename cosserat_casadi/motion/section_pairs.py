@@ -16,6 +16,9 @@ zero. For another coefficient e the gap is taken at
 which returns the share e of the speed (L. Paoli, M. Schatzman, *SIAM J. Numer. Anal.* 40 (2002) 702–733). Stages of
 several instants have no such pairs: a force at the first instant would throw back a section without restitution.
 
+Two rods have such a pair for each stretch of the first one: its gap to the second rod is least there over the abscissae
+of both, which :mod:`~cosserat_casadi.motion.nearest_places` finds. Forces act at these two sections, on one line.
+
 Coulomb friction adds no unknown. The touching point of a section moves by w along the surface within a stage, at its
 velocity at the end, and friction on it is
 
@@ -26,7 +29,7 @@ so a section on which friction is the share r of μ N creeps by √a ε r/√(1 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby, pairwise
@@ -36,17 +39,22 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.cable_length import pair_kernel
+from cosserat_casadi.equilibrium.contact.gap_rows import RodSurface
 from cosserat_casadi.equilibrium.contact.gaps import ball_radius, body_pairs, pairs, support_of
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_from, surface
 from cosserat_casadi.loads.contact_layer import along_surface, weighted_way
 from cosserat_casadi.loads.obstacle_load import section_radii
+from cosserat_casadi.loads.rods_point import across
 from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.contact_pairs import named_pairs
 from cosserat_casadi.model.function_table import PARAMETERS, Expressions, expressions_of
-from cosserat_casadi.model.section_poses import section_weights
+from cosserat_casadi.model.section_poses import interpolation_weights, section_weights
 from cosserat_casadi.model.system import System
 from cosserat_casadi.motion.coincident_ends import watched_ends
+from cosserat_casadi.motion.nearest_places import NearestPlaces
+from cosserat_casadi.motion.surface_sliding import material_arm
 
 SECTIONS = 8
 """Number of stretches of a rod, at whose ends are the sections that may touch an obstacle."""
@@ -57,19 +65,32 @@ STILL = 1e-12
 
 @dataclass(frozen=True)
 class TouchingSections:
-    """Sections of a rod, or a body, that may touch an obstacle.
+    """Sections of a rod, or a body, that may touch an obstacle, or stretches of a rod that may touch another rod.
 
     Attributes:
         owner: name of the rod or the body.
-        obstacle: the obstacle.
-        places: abscissae X of the sections, base to tip; a single number for a body.
+        against: the obstacle, or the contact with the other rod.
+        places: abscissae X of the sections, base to tip; a single number for a body; for stretches all their ends.
         of_body: whether the owner is a body.
+        other: name of the other rod; None for an obstacle.
     """
 
     owner: str
-    obstacle: scenes.ObstacleRecord
+    against: scenes.ObstacleRecord | scenes.RodContact
     places: tuple[float, ...]
     of_body: bool
+    other: str | None = None
+
+    @property
+    def obstacle(self) -> scenes.ObstacleRecord:
+        """The obstacle; not for stretches that may touch another rod."""
+        assert not isinstance(self.against, scenes.RodContact), "asked for of obstacles"
+        return self.against
+
+    @property
+    def count(self) -> int:
+        """Number of pairs of force and gap."""
+        return len(self.places) - (self.other is not None)
 
 
 @dataclass(frozen=True)
@@ -97,7 +118,7 @@ class TouchingPairs:
     @cached_property
     def touching(self) -> tuple[TouchingSections, ...]:
         """Sections and bodies that may touch, in the order of the pairs, sorted by coefficient of restitution."""
-        return tuple(sorted(self._all(), key=lambda touching: touching.obstacle.restitution))
+        return tuple(sorted(self._all(), key=lambda touching: touching.against.restitution))
 
     def _all(self) -> Iterator[TouchingSections]:
         nominal = self._nominal
@@ -109,16 +130,23 @@ class TouchingPairs:
                 yield TouchingSections(rod, obstacle, tuple(places), of_body=False)
         for body, obstacle in body_pairs(nominal.scene):
             yield TouchingSections(body.name, obstacle, (0.0,), of_body=True)
+        for contact, (rod, other) in named_pairs(nominal.scene):
+            if contact.exact:
+                yield TouchingSections(rod, contact, tuple(X), of_body=False, other=other)
 
     @cached_property
     def count(self) -> int:
         """Number of pairs."""
-        return sum(len(touching.places) for touching in self.touching)
+        return sum(touching.count for touching in self.touching)
 
     @cached_property
     def gaps(self) -> ca.Function:
         """(x, inputs), with parameters (x, inputs, p), ↦ gaps of all pairs over the length; x belongs to the model."""
-        return self._gaps(self.touching, "gaps")
+        symbols = self._written.symbols
+        given = list(symbols.values())
+        gaps = self._gaps(self.touching, "gaps")
+        places = self._nearest(self.touching).call(given)
+        return gaps if not places else ca.Function("gaps", given, gaps.call([*given, *places]), list(symbols), ["gaps"])
 
     @cached_property
     def force_units(self) -> FloatArray:
@@ -131,7 +159,7 @@ class TouchingPairs:
         """Displacement a of each section or body by the force EI/ℓ² within a stage, over the length, shape (count,)."""
         discrete = self._nominal.discrete
         units = [
-            np.full(len(touching.places), discrete.contact_unit(touching.owner, of_body=touching.of_body))
+            np.full(touching.count, discrete.contact_unit(touching.owner, of_body=touching.of_body))
             for touching in self.touching
         ]
         return np.concatenate([np.zeros(0), *units]) / self.force_units
@@ -192,8 +220,9 @@ class TouchingPairs:
         pushes: Matrix = ca.MX(self.model.size, 1)
         gaps: list[Matrix] = []
         first = 0
-        for restitution, group in groupby(self.touching, lambda touching: touching.obstacle.restitution):
-            function = self._gaps(tuple(group), "gaps_of_restitution")
+        for restitution, of_group in groupby(self.touching, lambda touching: touching.against.restitution):
+            group = tuple(of_group)
+            function = self._gaps(group, "gaps_of_restitution")
             # x₋ = x₊ − 2 h v₊ + h² a₊ with Euler's implicit method.
             back = restitution / (1.0 + restitution)
             x_between = x[own] - back * (2.0 * self.duration * v[own] - self.duration**2 * a[own])
@@ -201,10 +230,13 @@ class TouchingPairs:
             at = ca.MX.sym("at", self.model.size)
             given = [at, ca.MX.sym("inputs", inputs.shape[0])]
             given += [ca.MX.sym(PARAMETERS, each.shape[0]) for each in self._parameters(p)]
+            given += [ca.MX.sym("places", *places.shape) for places in self._place_symbols(group)]
             weights = ca.MX.sym("weights", function.size1_out(0))
             push = ca.densify(ca.jtimes(function(*given), at, weights, True))
             pushed = ca.Function("push", [*given, weights], [push])
             between = [x_between, inputs_between, *self._parameters(p)]
+            # Where a gap is least, a change of its places does not change it.
+            between += self._nearest(group).call(between)
             count = function.size1_out(0)
             gaps.append(function(*between))
             pushes = pushes + pushed(*between, energies[first : first + count])
@@ -215,36 +247,44 @@ class TouchingPairs:
         if self._rubbing:
             ways = ca.DM(self._lengths) * smoothings
             forces = ca.DM(self.force_units) * moved_by
-            pushes += self._friction(x[own], inputs, *self._parameters(p), v[own], rate, forces, ways)
+            given = [x[own], inputs, *self._parameters(p)]
+            places = self._nearest(tuple(touching for touching, _ in self._rubbing)).call(given)
+            pushes += self._friction(*given, *places, v[own], rate, forces, ways)
         rows: Matrix = ca.vertcat(-pushes / ca.DM(self.model.discrete.unknowns.units), residual.T)
         return rows
 
     @cached_property
     def _friction(self) -> ca.Function:
-        """(x, inputs, v, rate, forces, creeps) ↦ friction on the unknowns, J; parameters are appended to inputs."""
+        """(x, inputs, v, rate, forces, creeps) ↦ friction on the unknowns, J.
+
+        Parameters are appended to inputs, and then the places at which rods rub on rods.
+        """
         written = self._written
+        places = self._place_symbols(tuple(touching for touching, _ in self._rubbing))
         v, rate = ca.MX.sym("v", self.model.size), ca.MX.sym("rate", self.model.inputs.size)
         forces, ways = ca.MX.sym("forces", 1, self.count), ca.MX.sym("ways", 1, self.count)
-        poses = [self._poses(written.system, touching) for touching, _ in self._rubbing]
+        placed = self._placed(tuple(touching for touching, _ in self._rubbing), places)
+        poses = [self._poses(written.system, touching, at) for touching, at in placed]
         stacked = ca.vec(ca.horzcat(*poses))
         moved = ca.jtimes(stacked, written["x"], v) + ca.jtimes(stacked, written["inputs"], rate)
         rates = ca.vertsplit(moved, np.cumsum([0, *[pose.numel() for pose in poses]]).tolist())
         pulls = []
-        for (touching, span), pose, changes in zip(self._rubbing, poses, rates, strict=True):
+        for (touching, span), (_, at), pose, changes in zip(self._rubbing, placed, poses, rates, strict=True):
             creep = (ways[span] + STILL * self._length(touching)) / self.duration
-            drag = self._drag(touching).map(len(touching.places))
+            drag = (self._drag(touching) if at is None else self._drag_of_rods(touching)).map(touching.count)
             change = ca.reshape(changes, *pose.shape)
-            pulls.append(ca.vec(drag(pose, change, self._radii(touching).T, forces[span], creep)))
+            radii = self._radii(touching).T if at is None else self._radii_at(written.system, touching, at)
+            pulls.append(ca.vec(drag(pose, change, radii, forces[span], creep)))
         held = ca.jtimes(stacked, written["x"], ca.vertcat(*pulls), True)
-        arguments = [*written.symbols.values(), v, rate, forces.T, ways.T]
+        arguments = [*written.symbols.values(), *places, v, rate, forces.T, ways.T]
         return ca.Function("friction_of_pairs", arguments, [ca.densify(held)])
 
     @property
     def _rubbing(self) -> list[tuple[TouchingSections, slice]]:
         """Sections and bodies with friction, with the indices of their pairs among all pairs."""
-        ends = np.cumsum([len(touching.places) for touching in self.touching]).tolist()
+        ends = np.cumsum([touching.count for touching in self.touching]).tolist()
         places = [slice(start, end) for start, end in pairwise([0, *ends])]
-        return [each for each in zip(self.touching, places, strict=True) if each[0].obstacle.rubs]
+        return [each for each in zip(self.touching, places, strict=True) if each[0].against.rubs]
 
     def _drag(self, touching: TouchingSections) -> ca.Function:
         """(pose, its rate, radius, m, force, N, creep, m/s) ↦ generalised friction on the entries of the pose, 12×1.
@@ -267,8 +307,37 @@ class TouchingPairs:
         pull = ca.vertcat(held, ca.vec(held @ material.T))
         return ca.Function("drag", [pose, rate, radius, force, creep], [ca.cse(ca.densify(pull))])
 
-    def _poses(self, system: System, touching: TouchingSections) -> Matrix:
-        """Positions of sections, or of a body, and their rotations, in the axes of the obstacle, 12×k."""
+    def _drag_of_rods(self, touching: TouchingSections) -> ca.Function:
+        """(poses, their rates, radii, m, force, N, creep, m/s) ↦ generalised friction on the entries of both, 24×1.
+
+        Both rods touch at the point that divides the way between their centres as their radii do; friction on both
+        acts there.
+        """
+        poses, rates, radii = ca.SX.sym("poses", 24), ca.SX.sym("rates", 24), ca.SX.sym("radii", 2)
+        force, creep = ca.SX.sym("force"), ca.SX.sym("creep")
+        way = poses[:3] - poses[12:15]
+        normal, _ = across(way)
+        arm = -radii[0] / (radii[0] + radii[1]) * way
+        axes = [ca.reshape(poses[first : first + 9], 3, 3) for first in (3, 15)]
+        materials = [material_arm(axes[0], arm), material_arm(axes[1], way + arm)]
+        speeds = [
+            rates[first : first + 3] + ca.reshape(rates[first + 3 : first + 12], 3, 3) @ material
+            for first, material in zip((0, 12), materials, strict=True)
+        ]
+        slide = along_surface(speeds[0] - speeds[1], normal)
+        held = -force * touching.against.coefficients[0] * slide / ca.sqrt(ca.sumsqr(slide) + creep**2)
+        pulls = [ca.vertcat(pull, ca.vec(pull @ arm.T)) for pull, arm in zip((held, -held), materials, strict=True)]
+        return ca.Function(
+            "drag_of_rods", [poses, rates, radii, force, creep], [ca.cse(ca.densify(ca.vertcat(*pulls)))]
+        )
+
+    def _poses(self, system: System, touching: TouchingSections, places: Matrix | None) -> Matrix:
+        """Positions of sections, or of a body, and their rotations, in the axes of the obstacle, 12×k.
+
+        Of two rods those of both at their places, 24×k.
+        """
+        if places is not None:
+            return ca.vertcat(*[ca.vertcat(*sections) for sections in self._rods_in_world(system, touching, places)])
         carrier = touching.obstacle.body
         positions, *directors = self._in_world(system, touching)
         seen = system.seen_from(carrier, positions)
@@ -288,9 +357,76 @@ class TouchingPairs:
         return expressions_of(self.model, tuple(words), "")
 
     def _gaps(self, touching: tuple[TouchingSections, ...], name: str) -> ca.Function:
+        """(x, inputs) ↦ gaps; parameters are appended to inputs, and then the places of rods that touch rods."""
         written = self._written
-        gaps = ca.vertcat(*[self._gaps_of(written.system, each) for each in touching])
-        return ca.Function(name, list(written.symbols.values()), [ca.densify(gaps)], list(written.symbols), ["gaps"])
+        places = self._place_symbols(touching)
+        gaps = [
+            self._gaps_of(written.system, each) if at is None else self._gaps_of_rods(written.system, each, at)
+            for each, at in self._placed(touching, places)
+        ]
+        words = [*written.symbols, *(["places"] if places else [])]
+        arguments = [*written.symbols.values(), *places]
+        return ca.Function(name, arguments, [ca.densify(ca.vertcat(*gaps))], words, ["gaps"])
+
+    def _nearest(self, touching: tuple[TouchingSections, ...]) -> ca.Function:
+        """(x, inputs), with parameters (x, inputs, p), ↦ places on both rods, 2×k; without result if no rods touch."""
+        given = list(self._written.symbols.values())
+        found = [self._nearest_of[each](*given) for each in touching if each.other is not None]
+        return ca.Function("nearest", given, [ca.horzcat(*found)] if found else [])
+
+    @cached_property
+    def _nearest_of(self) -> dict[TouchingSections, ca.Function]:
+        """(x, inputs), with parameters (x, inputs, p), ↦ places on two rods, 2×k, for each two rods that may touch."""
+        written = self._written
+        given = list(written.symbols.values())
+        of_rods = [each for each in self.touching if each.other is not None]
+        return {
+            each: ca.Function(
+                f"places_{number}", given, [NearestPlaces(written.system, _rods(each), each.places, number).places]
+            )
+            for number, each in enumerate(of_rods)
+        }
+
+    @staticmethod
+    def _place_symbols(touching: Sequence[TouchingSections]) -> list[ca.MX]:
+        """Symbol of the places of all stretches, 2×k, in a list; empty if no rods touch."""
+        count = sum(each.count for each in touching if each.other is not None)
+        return [ca.MX.sym("places", 2, count)] if count else []
+
+    @staticmethod
+    def _placed(
+        touching: Sequence[TouchingSections], places: Sequence[Matrix]
+    ) -> list[tuple[TouchingSections, Matrix | None]]:
+        """Each with its columns of the places of stretches, which may be none; None for sections of an obstacle."""
+        placed: list[tuple[TouchingSections, Matrix | None]] = []
+        first = 0
+        for each in touching:
+            last = first + (0 if each.other is None else each.count)
+            placed.append((each, None if each.other is None else places[0][:, first:last]))
+            first = last
+        return placed
+
+    def _gaps_of_rods(self, system: System, touching: TouchingSections, places: Matrix) -> Matrix:
+        """Gaps of two rods at their places, 2×k, over the length, k×1."""
+        own, other = (sections[0] for sections in self._rods_in_world(system, touching, places))
+        radii = ca.sum1(self._radii_at(system, touching, places))
+        gaps: Matrix = (ca.sqrt(ca.sum1((own - other) ** 2)) - radii).T / self._length(touching)
+        return gaps
+
+    def _rods_in_world(self, system: System, touching: TouchingSections, places: Matrix) -> list[list[Matrix]]:
+        """World positions of the sections of both rods, m, and their directors, 3×k each."""
+        found = []
+        for row, rod in enumerate(_rods(touching)):
+            at = ca.horzsplit(places[row, :])
+            weights = ca.horzcat(*[interpolation_weights(self.model.discrete, rod, X) for X in at])
+            found.append(system.sections(rod, weights))
+        return found
+
+    def _radii_at(self, system: System, touching: TouchingSections, places: Matrix) -> Matrix:
+        """Radii of both rods at their places, 2×k, m."""
+        both = [RodSurface(system, rod) for rod in _rods(touching)]
+        radii: Matrix = ca.vertcat(*[rod.radius(places[row, :]) for row, rod in enumerate(both)])
+        return radii
 
     def _gaps_of(self, system: System, touching: TouchingSections) -> Matrix:
         """Gaps of sections, or of a body, from an obstacle, over the length, k×1."""
@@ -325,19 +461,32 @@ class TouchingPairs:
 
     def _length(self, touching: TouchingSections) -> float:
         """Length by which gaps are divided, m."""
-        discrete = self._nominal.discrete
         if touching.of_body:
-            return float(discrete.body_frame(touching.owner).length)
-        return float(discrete.rods[touching.owner].properties.length)
+            return float(self._nominal.discrete.body_frame(touching.owner).length)
+        return self._length_of(touching.owner)
+
+    def _length_of(self, rod: str) -> float:
+        return float(self._nominal.discrete.rods[rod].properties.length)
 
     @cached_property
     def _lengths(self) -> FloatArray:
         """Length by which the gap of each pair is divided, m, shape (count,)."""
-        lengths = [np.full(len(touching.places), self._length(touching)) for touching in self.touching]
+        lengths = [np.full(touching.count, self._length(touching)) for touching in self.touching]
         return np.concatenate([np.zeros(0), *lengths])
 
     def _force_units(self, touching: TouchingSections) -> FloatArray:
-        """Force, N, that moves each section by one length within a stage, in the direction in which it yields most."""
+        """Force, N, that moves each section by one length within a stage, in the direction in which it yields most.
+
+        The middle of a stretch moves, together with that of the stretch of the other rod that yields most.
+        """
+        if touching.other is not None:
+            middle = [(start + end) / 2 for start, end in pairwise(touching.places)]
+            of_rods = [
+                self._force_units(TouchingSections(rod, touching.against, tuple(middle), of_body=False))
+                for rod in _rods(touching)
+            ]
+            own, other = of_rods[0], float(of_rods[1].min()) * self._length(touching) / self._length_of(touching.other)
+            return np.asarray(own * other / (own + other))
         nominal = self._nominal
         at = nominal.unloaded(), nominal.pack()
         written = expressions_of(nominal, ("x", "inputs"), "")
@@ -356,3 +505,9 @@ class TouchingPairs:
             # What cannot move is pushed by any force.
             units.append(self._length(touching) / most if most > 0.0 else 1.0)
         return np.array(units)
+
+
+def _rods(touching: TouchingSections) -> tuple[str, str]:
+    """Names of two rods that touch."""
+    assert touching.other is not None, "asked for of rods that touch rods"
+    return touching.owner, touching.other

@@ -76,8 +76,8 @@ class SurfaceSliding:
             way = centre - poses[1][0]
             normal = way / ca.sqrt(ca.sumsqr(way))
             arm = -radii[0] / (radii[0] + radii[1]) * way
-            velocity = _velocity(moved[0], _material(rotation, arm))
-            velocity -= _velocity(moved[1], _material(poses[1][1], way + arm))
+            velocity = _velocity(moved[0], material_arm(rotation, arm))
+            velocity -= _velocity(moved[1], material_arm(poses[1][1], way + arm))
         else:
             _, normal, _ = surface(facing.obstacle)(centre)
             velocity = _velocity(moved[0], rotation.T @ (-radii[0] * normal))
@@ -202,7 +202,7 @@ def _radius(side: Facing, X: Matrix) -> Matrix:
     return base + X * (tip - base)
 
 
-def _material(rotation: Matrix, arm: Matrix) -> Matrix:
+def material_arm(rotation: Matrix, arm: Matrix) -> Matrix:
     """Components of an arm along the directors, 3×1, m.
 
     Interpolated directors are orthogonal only up to the error of polynomials, so they are inverted: otherwise forces at

@@ -388,3 +388,22 @@ def test_rows_tell_where_rods_touch() -> None:
     assert_allclose(rows["a.b.contacts"], [0.0, 1.0], rtol=0, atol=0)
     assert_allclose([rows["a.b.at"][1], rows["a.b.at_other"][1]], contact.on_rods or (), rtol=0, atol=1e-9)
     assert_allclose([rows[f"a.b.force.{axis}"][1] for axis in "xyz"], contact.force, rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [0, 1, 2, 3, 4, 11])
+def test_nearly_parallel_rods_tell_their_error(seed: int) -> None:
+    """Two rods along each other that end in one point of contact, against SciPy's shooting."""
+    random = np.random.default_rng(1000 + seed)
+    tilt = random.choice([0, 1e-4, 1e-3, 1e-2, 0.05]) * random.normal()
+    rise = random.choice([0, 0, 1e-3, 1e-2]) * random.normal()
+    way = np.array([random.choice([1, -1]), tilt, rise])
+    way /= np.linalg.norm(way)
+    shift = [random.uniform(-0.03, 0.03), random.choice([0, 0, 5e-4]) * random.normal()]
+    below = [shift[0] + 0.1 * (way[0] < 0), shift[1], -(2e-3 + random.choice([1e-5, 3e-4, 1e-3]))]
+    push = [0.0, 0.0, -float(random.choice([2e-4, 1e-3, 3e-3]))]
+    tables = pressed(push, {"position": below, "tangent": way.tolist()}, accuracy={"modes": 7})
+    solution = solve(build(scene_from_dict(tables)))
+    assert solution.converged, solution.message
+    off = shot(solution, (1e-3, 1e-3), (np.array(push), np.zeros(3)))
+    assert max(off) < (solution.error_estimate or 0.0) + 1e-11

@@ -8,12 +8,18 @@ dimensionless force N and a gap g over the length, with the complementarity of a
 Forces and gaps are those of the exact law: a section is a contact at a point, where an element ends. The smoothing ε
 and the abscissae of the sections are parameters of the equations. As ε goes to zero each section obeys the exact law;
 rods may enter obstacles between sections, so that touching sections are moved to the places of the exact contacts.
+
+Two rods that touch have one pair, at a section of either whose abscissae s follow from unknowns y of any size: the gap
+is least there, but for a barrier that keeps the sections off the ends of their rods,
+
+    s = (1 + y/√(1 + y²))/2,    ∂g/∂s − b/s + b/(1 − s) = 0,    b = ε²/2 and a rest that keeps elements from vanishing.
 """
 
 from __future__ import annotations
 
 from bisect import bisect
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -21,20 +27,25 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.cable_length import pair_kernel
 from cosserat_casadi.equilibrium.contact.contact_equations import BehindPlaces, ContactEquations, Grids
 from cosserat_casadi.equilibrium.contact.contact_search import contact_equilibrium
 from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
 from cosserat_casadi.equilibrium.contact.contact_state import (
+    AT_END,
+    SHORTEST,
     TIP,
     ContactState,
     Touch,
+    at_end,
     given_inputs,
     load_sections,
     without_contacts,
 )
 from cosserat_casadi.equilibrium.contact.gap_rows import force_widths
-from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs
+from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs, rod_pairs
+from cosserat_casadi.equilibrium.contact.rod_gaps import RodsApart
 from cosserat_casadi.equilibrium.contact.shape_projection import projected
 from cosserat_casadi.equilibrium.load_path import column
 from cosserat_casadi.equilibrium.solution import Solution
@@ -42,12 +53,14 @@ from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.inputs import InputLayout
-from cosserat_casadi.model.obstacle_checks import exact_rods
 from cosserat_casadi.numerics.newton import Equations, NewtonSettings, newton
 from cosserat_casadi.numerics.outcome import Outcome
 
 SECTIONS = 8
 """Sections of a rod that may touch an obstacle."""
+
+FIRST_PLACE = 0.5
+"""Abscissa on both rods at which two that touch are divided first."""
 
 MODES = 2
 """Polynomials of each strain between two sections: without other loads the moment is linear there."""
@@ -55,13 +68,19 @@ MODES = 2
 NODES = 4
 """Intervals of the integration between two sections."""
 
+LAST_BARRIER = SHORTEST / 2
+"""Barrier b without smoothing: an end on which a gap of the slope 1/2 presses a section keeps SHORTEST from it."""
+
 FIRST_SMOOTHING = 1e-2
 """First smoothing ε: gap times force is 5e-5 in units of the length and of EI/ℓ²."""
 
 
 @dataclass(frozen=True)
 class RelaxedContact:
-    """A scene in exact contact as functions of its unknowns z = (x, N), its inputs, and p = (ε, abscissae).
+    """A scene in exact contact as functions of its unknowns z = (x, N, y), its inputs, and p = (ε, abscissae).
+
+    Behind the forces stand the numbers y of the abscissae at which rods touch rods. The abscissae in p are of
+    sections that touch obstacles.
 
     Attributes:
         model: the model of the scene, with the modes for exact contacts.
@@ -78,7 +97,7 @@ class RelaxedContact:
 
     @property
     def size(self) -> int:
-        """Number of unknowns plus number of forces."""
+        """Number of unknowns, of forces, and of places at which rods touch rods."""
         return int(self._written.z.shape[0])
 
     @property
@@ -89,7 +108,20 @@ class RelaxedContact:
     @property
     def defaults(self) -> FloatArray:
         """The first smoothing, and abscissae that are evenly spread, shape (1 + sections,)."""
-        return np.concatenate([[FIRST_SMOOTHING], self.equations.state.places])
+        return np.concatenate([[FIRST_SMOOTHING], self.equations.state.places[~self._sought]])
+
+    @cached_property
+    def _sought(self) -> npt.NDArray[np.bool_]:
+        """Mask of the places of the state that are unknowns, at which rods touch rods."""
+        return sought_places(self.equations.state)
+
+    def _places(self, z: FloatArray, p: FloatArray) -> FloatArray:
+        """All places of the state."""
+        places = np.empty(len(self._sought))
+        numbers = z[len(z) - int(self._sought.sum()) :]
+        places[self._sought] = (1 + numbers / np.sqrt(1 + numbers**2)) / 2
+        places[~self._sought] = p[1:]
+        return places
 
     @cached_property
     def residual(self) -> ca.Function:
@@ -141,11 +173,12 @@ class RelaxedContact:
             p: smoothing and abscissae; by default :attr:`defaults`.
         """
         at = np.asarray(self.defaults if p is None else p, dtype=float)
-        equations = replace(self.equations, state=self.equations.state.at(at[1:].tolist()))
+        touching = self._touching(solution)
+        equations = replace(self.equations, state=self.equations.state.at(self._places(touching, at).tolist()))
         inputs = given_inputs(solution.model, solution.inputs)
         z = equations.start_from(projected(solution, equations.nominal.model), inputs)
         x, forces, places = equations.parts(z)
-        start = np.concatenate([self.equations.moved_strains(places) * x, np.maximum(forces, 0.0)])
+        start = np.concatenate([self.equations.moved_strains(places) * x, np.maximum(forces, 0.0), touching])
         relaxed = newton(
             Equations(
                 lambda z: column(self.residual(z, inputs, at)),
@@ -155,6 +188,20 @@ class RelaxedContact:
             NewtonSettings(),
         )
         return relaxed.x if relaxed.outcome is Outcome.CONVERGED else start
+
+    def _touching(self, solution: Solution) -> FloatArray:
+        """Numbers y of where rods touch rods in a solution, or are nearest to each other, shape (places of rods,)."""
+        known = {(contact.owner, contact.obstacle): contact.on_rods for contact in solution.contacts}
+        places: list[float] = []
+        for touch in self.equations.state.touches:
+            if touch.other is None:
+                continue
+            at = known.get((touch.owner, touch.obstacle))
+            if at is None:
+                at = min(RodsApart.of(solution, (touch.owner, touch.obstacle)).valleys, key=lambda own: own.gap).places
+            places += at
+        offsets = 2 * np.clip(np.array(places), AT_END, TIP - AT_END) - 1
+        return np.asarray(offsets / np.sqrt(1 - offsets**2))
 
     def solution(self, z: FloatArray, inputs: FloatArray, p: FloatArray) -> Solution:
         """The shape of unknowns z as a solution that is not judged, with a contact at every section."""
@@ -176,13 +223,15 @@ class RelaxedContact:
 
     def moved_to(self, solution: Solution, p: FloatArray) -> FloatArray:
         """The parameters p with the sections nearest to a solution's contacts moved to the contacts' places."""
-        touches = list(self.equations.state.at(p[1:].tolist()).touches)
+        places = self.equations.state.places
+        places[~self._sought] = p[1:]
+        touches = list(self.equations.state.at(places.tolist()).touches)
         loads = load_sections(self.equations.scene)
         for owner, obstacle in {(contact.owner, contact.obstacle) for contact in solution.contacts}:
             numbers = [
                 number
                 for number, touch in enumerate(touches)
-                if (touch.owner, touch.obstacle) == (owner, obstacle) and any(touch.moves)
+                if (touch.owner, touch.obstacle) == (owner, obstacle) and any(touch.moves) and touch.other is None
             ]
             places = {
                 place
@@ -196,10 +245,11 @@ class RelaxedContact:
                 for number, section in zip(numbers, sections, strict=True):
                     touches[number] = touches[number].moved([section])
         moved = ContactState(tuple(touches)).places
-        return np.concatenate([p[:1], moved]) if self.equations.in_order(moved) else p
+        return np.concatenate([p[:1], moved[~self._sought]]) if self.equations.in_order(moved) else p
 
     def _equilibrium(self, z: FloatArray, inputs: FloatArray, p: FloatArray) -> tuple[Solution, ContactState]:
-        equilibrium = contact_equilibrium(self.equations, np.concatenate([z, p[1:]]), inputs)
+        own = z[: len(z) - int(self._sought.sum())]
+        equilibrium = contact_equilibrium(self.equations, np.concatenate([own, self._places(z, p)]), inputs)
         return equilibrium.solution, _pressing(equilibrium.state, equilibrium.forces, p[0] / np.sqrt(2))
 
     @cached_property
@@ -252,30 +302,52 @@ class _Written:
         written = equations.written
         x, forces, places = written.unknowns
         size, count = x.shape[0], forces.shape[0]
-        # Rows without a width are slopes of gaps, which determine places: sections have fixed places.
+        mask = sought_places(equations.state)
+        sought, given = np.flatnonzero(mask).tolist(), np.flatnonzero(~mask).tolist()
+        # Rows without a width are slopes of gaps, one for each place: sections beside obstacles have fixed places.
         widths = force_widths(equations.state, written.modes)
         gap_rows = [size + number for number, width in enumerate(widths) if width is not None]
+        slope_rows = [size + number for number, width in enumerate(widths) if width is None]
         smoothing = ca.MX.sym("smoothing")
         kernel = pair_kernel(slack=True, softness=1.0).map(count)
         row = written.residual[gap_rows].T
         residuals, by_gap, by_force = kernel(row, forces.T, ca.repmat(smoothing, 1, count))
-        whole = written.jacobian[:, : size + count]
-        by_forces = ca.horzcat(ca.MX(count, size), ca.diag(by_force.T))
+        columns = [*range(size + count), *(size + count + place for place in sought)]
+        whole = written.jacobian[:, columns]
+        by_forces = ca.horzcat(ca.MX(count, size), ca.diag(by_force.T), ca.MX(count, len(sought)))
         pairs_by_z = ca.diag(by_gap.T) @ whole[gap_rows, :] + by_forces
-        z = ca.MX.sym("z", size + count)
-        p = ca.MX.sym("p", 1 + places.shape[0])
+        z = ca.MX.sym("z", size + count + len(sought))
+        p = ca.MX.sym("p", 1 + len(given))
         at = [x, equations.nominal.written_inputs(written.given, forces)]
         if places.shape[0]:
             at.append(places)
-        expressions = [
-            ca.vertcat(written.residual[:size], residuals.T),
-            ca.vertcat(whole[:size, :], pairs_by_z),
-            *at,
-        ]
+        residual = [written.residual[:size], residuals.T]
+        jacobian = [whole[:size, :], pairs_by_z]
+        if sought:
+            barrier = smoothing**2 / 2 + LAST_BARRIER
+            at_sections = places[sought]
+            slopes = [slope_rows[place] for place in sought]
+            residual.append(written.residual[slopes] - barrier / at_sections + barrier / (1 - at_sections))
+            stiffness = barrier / at_sections**2 + barrier / (1 - at_sections) ** 2
+            jacobian.append(whole[slopes, :] + ca.horzcat(ca.MX(len(sought), size + count), ca.diag(stiffness)))
+        expressions = [ca.vertcat(*residual), ca.vertcat(*jacobian), *at]
+        own, pushes, numbers = ca.vertsplit(z, [0, size, size + count, z.shape[0]])
+        new_smoothing, fixed = ca.vertsplit(p, [0, 1, p.shape[0]])
+        new_places = fixed
+        if sought:
+            new_places = ca.MX(places.shape[0], 1)
+            new_places[sought], new_places[given] = (1 + numbers / ca.sqrt(1 + numbers**2)) / 2, fixed
+            by_numbers = 1 / (2 * ca.sqrt(1 + numbers**2) ** 3)
+            expressions[1] = expressions[1] @ ca.diag(ca.vertcat(ca.DM.ones(size + count), by_numbers))
         old = [x, forces, smoothing, places]
-        new = [*ca.vertsplit(z, [0, size, size + count]), *ca.vertsplit(p, [0, 1, p.shape[0]])]
+        new = [own, pushes, new_smoothing, new_places]
         residual, jacobian, *at = ca.graph_substitute(expressions, old, new)
         return cls(z, written.given, p, at, residual, jacobian)
+
+
+def sought_places(state: ContactState) -> npt.NDArray[np.bool_]:
+    """Mask of the places of a state at which rods touch rods, shape (k,)."""
+    return np.array([touch.other is not None for touch in state.touches for _ in touch.moving], dtype=bool)
 
 
 def _nearest(sections: list[float], places: list[float], loads: Sequence[float]) -> list[float]:
@@ -317,6 +389,8 @@ def _pressing(state: ContactState, forces: FloatArray, least: float) -> ContactS
 def _as_one(run: Sequence[tuple[Touch, float]]) -> Touch:
     """The one contact that represents neighbours which press: a point, or a line."""
     first, last = run[0][0], run[-1][0]
+    if first.other is not None:
+        return Touch.of_rods((first.owner, first.obstacle), (at_end(first.start), at_end(first.other)))
     if first.of_body or len(run) == 1:
         return first
     if len(run) > 2:
@@ -337,13 +411,14 @@ def relaxed_contact(
         nodes: intervals of the integration between two sections.
 
     Raises:
-        SceneError: nothing touches exactly, or fewer than one section is asked for.
+        SceneError: nothing touches exactly, fewer than one section is asked for, or a rod that touches another one has
+            further sections at which its elements end.
     """
     scene = model.at().scene.baked()
     if not scene.touches_exactly:
         problem = "no rod touches exactly: there is no pair to relax"
         raise SceneError(Problem("obstacles", problem, "take the model itself"))
-    refuse(exact_rods(scene, "relaxed contact"))
+    refuse(_crowded(scene))
     if sections < 1:
         raise SceneError(Problem("sections", f"must be 1 or more, got {sections}"))
     of_rods = list(pairs(scene))
@@ -355,6 +430,7 @@ def relaxed_contact(
             late = number / len(obstacles)
             inner = [(i + 1 - late) / sections for i in range(sections - (late == 0.0))]
             touches += [Touch.point(obstacle.name, rod.name, X) for X in (*inner, TIP)]
+    touches += [Touch.of_rods(rods, (FIRST_PLACE, FIRST_PLACE)) for rods in rod_pairs(scene)]
     grids = dict(model.discretisation)
     for name in {rod for rod, _ in of_rods}:
         grids[name] = replace(grids[name], modes=(modes,) * len(grids[name].modes), nodes=nodes)
@@ -362,3 +438,20 @@ def relaxed_contact(
     state = ContactState.of(touches).split(load_sections(bare))
     equations = ContactEquations(bare, model.pack(), Grids(grids), state)
     return RelaxedContact(model.at(), equations)
+
+
+def _crowded(scene: scenes.Scene) -> Iterator[Problem]:
+    """Problems of rods that touch a rod and have other sections at which elements end: a place would pass these."""
+    loads = load_sections(without_contacts(scene))
+    met = Counter(rod for rods in rod_pairs(scene) for rod in rods)
+    beside = {rod for rod, _ in pairs(scene)}
+    for number, contact in enumerate(scene.rod_contacts):
+        for name, count in met.items():
+            if contact.exact and (contact.rods is None or name in contact.rods):
+                others = ["several rods"] * (count > 1) + ["an obstacle"] * (name in beside)
+                others += ["a load or a rod between its ends"] * bool(loads[name])
+                if others:
+                    problem = f"the place at which {name!r} touches a rod would have to pass others: it has {others[0]}"
+                    yield Problem(
+                        f"rod_contacts[{number}].exact", problem, "leave exact out, for a contact that is smooth"
+                    )
