@@ -67,6 +67,7 @@ class RepeatedCall:
         evaluate: function that reads the arguments and writes the results.
         code: the function in machine code; None if CasADi's virtual machine runs it.
         program: program of the function for a loop in C; None if none was written.
+        at_stages: the function in machine code at the three stages of a step, a column each; None if there is none.
         program_after: function of the iterations that a motion has taken without a program ↦ the program, or None if
             it does not pay yet; None if no program is to be written.
 
@@ -80,6 +81,7 @@ class RepeatedCall:
         # CasADi stores column by column.
         self.results = [np.zeros(shape, order="F") for shape in sizes.results]
         self.program: ScalarProgram | None = None
+        self.at_stages: RepeatedCall | None = None
         self.program_after: Callable[[int], ScalarProgram | None] | None = None
         self.code: MachineCode | None = None
         self.evaluate: Callable[[], object]
@@ -185,6 +187,12 @@ def _entry(name: str, library: str) -> tuple[Callable[..., int], int]:
     address = ctypes.cast(function, ctypes.c_void_p).value
     assert address is not None, "a function has an address"
     return function, address
+
+
+@lru_cache(maxsize=MOST_LOADED)
+def has_function(name: str, library: str) -> bool:
+    """Whether a shared object has a function."""
+    return hasattr(ctypes.CDLL(library), name)
 
 
 def repeated(function: ca.Function, library: str | None, results: int = 1, *, as_scalars: bool = True) -> RepeatedCall:
