@@ -85,5 +85,8 @@ def test_steps_in_c_call_it_for_their_stages(call: RepeatedCall) -> None:
         history = integrated(model, pieces, start, start, radau(STAGES), settings, kernels=asked)
         assert history.completed
         ends.append(history.end.x)
+        # The last stage is the end of the step.
+        for number, values in enumerate(pieces[-1].at(0.05), start=3) if at_stages else ():
+            assert_allclose(at_stages.arguments[number].reshape(STAGES, -1)[-1], values, rtol=1e-12, atol=1e-12)
     assert np.abs(ends[0]).max() > 1e-3
     assert_allclose(ends[0], ends[1], rtol=0, atol=1e-12)
