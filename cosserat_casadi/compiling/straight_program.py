@@ -9,24 +9,14 @@ from collections.abc import Sequence
 
 import casadi as ca
 
-from cosserat_casadi.compiling.listing import BINARY, CHOICES, FUNCTIONS, LANES, REWRITTEN
+from cosserat_casadi.compiling.listing import LANES
 from cosserat_casadi.compiling.printed_kernels import PrintedKernel
-from cosserat_casadi.compiling.scalar_program import MINUS_PRODUCT, OF_TWO, PLUS_PRODUCT, PRODUCT_MINUS, ScalarProgram
+from cosserat_casadi.compiling.scalar_program import FOURS, NUMBERS, ScalarProgram
 from cosserat_casadi.compiling.statements import number_in_c
 from cosserat_casadi.numerics.collocation import STAGES
 
 LONGEST_PART = 1000
 """Most lines of a program in a function: the time of compilers grows faster than its length."""
-
-FOURS = {ca.OP_ASSIGN: "{a}", ca.OP_SQ: "{a} * {a}"}
-FOURS |= {code: f"{{a}} {sign} {{b}}" for code, sign in BINARY.items()}
-FOURS |= {PLUS_PRODUCT: "{c} + {a} * {b}", MINUS_PRODUCT: "{c} - {a} * {b}", PRODUCT_MINUS: "{a} * {b} - {c}"}
-FOURS |= {code: f"EACH({constant!r}) {BINARY[operation]} {{a}}" for code, (operation, constant) in REWRITTEN.items()}
-"""Operations on four lanes at once."""
-
-NUMBERS = {code: f"{name}(p[i], q[i])" if name in OF_TWO else f"{name}(p[i])" for code, name in FUNCTIONS.items()}
-NUMBERS |= {code: text.format("p[i]", "q[i]") for code, text in CHOICES.items()}
-"""Operations on one lane after the other."""
 
 BEFORE = """#undef EVERY
 #ifdef FOURS_IN_VECTORS
@@ -110,7 +100,7 @@ def _body(function: ca.Function, parts: Sequence[str], columns: int) -> str:
 def _parts(program: ScalarProgram, results: int) -> tuple[list[list[str]], int]:
     """Write the statements of a program in parts; also return how many fours of memory they need.
 
-    What one part computes and another reads is in memory, in a place of its own behind arguments and results.
+    A value that one part computes and another reads is in memory, in a place behind arguments and results.
     """
     lines, slots, arguments = program
     size = arguments + results
@@ -141,11 +131,9 @@ def _parts(program: ScalarProgram, results: int) -> tuple[list[list[str]], int]:
                 value = FOURS[code].format(a=a, b=b, c=c)
                 part.append(f"  const FOUR v{number} = {_four(value) if _is_one(a, b, c) else value};")
             else:
-                copies = [("p", a)] if "q[i]" not in NUMBERS[code] else [("p", a), ("q", b)]
-                stored = " ".join(f"STORE({name}, {_four(x) if _is_one(x) else x});" for name, x in copies)
-                declared = ", ".join(f"{name}[4]" for name, _ in copies)
-                part.append(f"  FOUR v{number}; {{ casadi_real {declared}; {stored}")
-                part.append(f"    EVERY(p[i] = {NUMBERS[code]}) v{number} = LOAD(p); }}")
+                stored = " ".join(f"STORE({x}, {_four(v) if _is_one(v) else v});" for x, v in (("a", a), ("b", b)))
+                part.append(f"  FOUR v{number}; {{ casadi_real a[4], b[4]; {stored} (void)b;")
+                part.append(f"    EVERY(a[i] = {NUMBERS[code]}) v{number} = LOAD(a); }}")
             if number in of_result or last_reader.get(number, -1) >= first + LONGEST_PART:
                 if number not in place:
                     place[number] = size
