@@ -17,7 +17,7 @@ LINES = {
     "beside rooms": 605,
     "cli": 4_415,
     "codegen": 11_740,
-    "compiling": 5_199,
+    "compiling": 5_205,
     "constraints": 1_035,
     "control": 2_810,
     "environments": 335,

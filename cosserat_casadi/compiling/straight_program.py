@@ -107,13 +107,17 @@ def _parts(program: ScalarProgram, results: int) -> tuple[list[list[str]], int]:
     # The line that wrote a slot last, and all readers of a line.
     writer: dict[int, int] = {}
     operands: list[tuple[tuple[int, int], ...]] = []
-    last_reader: dict[int, int] = {}
     for number, (_, to, *read) in enumerate(lines.tolist()):
         operands.append(tuple((slot, writer.get(slot, -1)) for slot in read))
-        last_reader |= dict.fromkeys((line for _, line in operands[-1] if line >= 0), number)
         writer[to] = number
     of_result = {line: slot for slot, line in writer.items() if arguments <= slot < size}
     place = dict(of_result)
+    # Nobody reads some lines: the last reader of each of the others, a result's line its own.
+    last_reader = {line: line for line in of_result}
+    for number in reversed(range(len(lines))):
+        if number in last_reader:
+            for _, line in operands[number]:
+                last_reader.setdefault(line, number)
 
     def text(slot: int, line: int, first: int) -> str:
         if line >= first:
@@ -126,6 +130,8 @@ def _parts(program: ScalarProgram, results: int) -> tuple[list[list[str]], int]:
     for first in range(0, len(lines), LONGEST_PART):
         part = []
         for number, code in enumerate(lines[first : first + LONGEST_PART, 0].tolist(), start=first):
+            if number not in last_reader:
+                continue
             a, b, c = (text(slot, line, first) for slot, line in operands[number])
             if code in FOURS:
                 value = FOURS[code].format(a=a, b=b, c=c)
@@ -134,7 +140,7 @@ def _parts(program: ScalarProgram, results: int) -> tuple[list[list[str]], int]:
                 stored = " ".join(f"STORE({x}, {_four(v) if _is_one(v) else v});" for x, v in (("a", a), ("b", b)))
                 part.append(f"  FOUR v{number}; {{ casadi_real a[4], b[4]; {stored} (void)b;")
                 part.append(f"    EVERY(a[i] = {NUMBERS[code]}) v{number} = LOAD(a); }}")
-            if number in of_result or last_reader.get(number, -1) >= first + LONGEST_PART:
+            if number in of_result or last_reader[number] >= first + LONGEST_PART:
                 if number not in place:
                     place[number] = size
                     size += 1
