@@ -167,6 +167,11 @@ class ObstacleRecord(Entry):
         return max(self.coefficients) > 0.0
 
     @property
+    def rubs_on_paths(self) -> bool:
+        """Whether there is friction on rods along paths: without a width by one coefficient, not a table."""
+        return self.rubs and self.presses_rods and (self.is_smooth or len(set(self.coefficients)) == 1)
+
+    @property
     def presses_rods(self) -> bool:
         """Whether it acts on rods: it names some, or neither bodies nor disks."""
         return self.rods is not None or (self.bodies is None and self.disks is None)
