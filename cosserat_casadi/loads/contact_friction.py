@@ -27,7 +27,7 @@ class ContactFriction(ObstacleLoadRecord):
 
     kind: Literal["contact_friction"] = "contact_friction"
     at: Any
-    force: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    force: tuple[float, float, float]
 
 
 @final

@@ -221,7 +221,11 @@ class RubbingEquations(ContactEquations):
         """A scene with the forces of contacts as loads, those of friction last."""
         friction = [
             ContactFriction.model_construct(
-                name=f"friction {number}", rod=touch.owner, obstacle=obstacle_of(scene, touch.obstacle), at=touch.start
+                name=f"friction {number}",
+                rod=touch.owner,
+                obstacle=obstacle_of(scene, touch.obstacle),
+                at=touch.start,
+                force=(0.0, 0.0, 0.0),
             )
             for number, touch in enumerate(state.touches, start=1)
             if rubs(scene, touch)

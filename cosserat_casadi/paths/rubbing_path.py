@@ -18,6 +18,7 @@ from math import inf
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.contact.contact_state import ContactState, Touch
 from cosserat_casadi.equilibrium.contact.gaps import obstacle_of
@@ -137,6 +138,11 @@ class RubbingArrangement(Arrangement):
             body = obstacle_of(self.scene, touch.obstacle).body
             found.append((number, force if body is None else bodies[body].rotation @ force))
         return found
+
+    def turned(self, last: ArcPoint, end: ArcPoint) -> npt.NDArray[np.bool_]:
+        """Whether friction of each contact has turned back in an increment, shape (k,)."""
+        before, after = (self.equations.friction(self.z(point)) for point in (last, end))
+        return np.asarray(np.sum(before * after, axis=1) < 0.0)
 
     def might_stick(self, point: ArcPoint, slips: Sequence[bool | None]) -> int | None:
         """Index of a slipping contact that might stick beside this point as well as slip on; None without any."""
@@ -318,15 +324,19 @@ class RubbingTravel(Travel):
             return None
         if guarded is not end:
             broken = None
-        excess = self.arrangement.excess(guarded)
-        sticking = [slips and own < -HOLDS for slips, own in zip(self.sliding, excess, strict=True)]
-        if any(sticking) and guarded.load_factor - last.load_factor > STICKS:
+        arrangement = self.arrangement
+        holds = arrangement.excess(guarded) < -HOLDS
+        turned = arrangement.turned(last, guarded)
+        halts = [bool(slips and (held or back)) for slips, held, back in zip(self.sliding, holds, turned, strict=True)]
+        if any(halts) and guarded.load_factor - last.load_factor > STICKS:
             return None
-        for number, stuck in enumerate(sticking):
-            if stuck:
+        for number, halted in enumerate(halts):
+            if halted:
                 self._add_event("stick", last, number, len(points))
-        self.sliding = [bool(own > -HOLDS) if slips is None else bool(slips and not stuck)
-                        for slips, stuck, own in zip(self.sliding, sticking, excess, strict=True)]
+            if halted and not holds[number]:
+                self._add_event("slip", last, number, len(points))
+            if halted or self.sliding[number] is None:
+                self.sliding[number] = not holds[number]
         if broken is not None:
             number, at = broken
             self.sliding[number] = True
