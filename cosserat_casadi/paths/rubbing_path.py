@@ -11,7 +11,6 @@ Equations, Springer 2012, section 2.3).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import inf
@@ -48,11 +47,17 @@ CORRECTIONS = 20
 HOLDS = 1e-9
 """Force relative to what friction can hold that counts as rounding."""
 
+LEAST = 1e-3
+"""Force, in EI/ℓ², to which smaller ones are compared."""
+
 STICKS = 1e-3
 """Longest increment of the factor in which a contact that slips may stick again."""
 
-BESIDE = 1e-6
-"""Relative change of a force of friction after which a contact that may slip or stick does one of these."""
+BESIDE = 2e-5
+"""Force relative to what friction can hold within which a contact is at the limit."""
+
+AWAY = 1e-3
+"""Relative change of a force of friction with which such a contact slips, or sticks, beyond doubt."""
 
 UNDETERMINED = 1e-8
 """Singular value, relative to the largest, below which forces of friction have no effect together."""
@@ -67,8 +72,8 @@ SHARED = (
 )
 
 NOT_UNIQUE = (
-    " At factor {factor:.6g} friction allows other equilibria too, since {owner!r} might stick on {obstacle!r} or slip: "
-    "the path goes on with one of them."
+    " At factor {factor:.6g} friction does not determine how the path goes on: {owner!r} may stick on {obstacle!r}, or "
+    "slip away from this equilibrium."
 )
 
 
@@ -120,7 +125,7 @@ class RubbingArrangement(Arrangement):
         """Force that would hold each contact less what friction can, relative to the largest force, shape (k,)."""
         z = self.z(point)
         _, forces, _ = self.equations.parts(z)
-        return self.at(point.load_factor).excess(z) / max(1.0, float(np.abs(forces).max(initial=0.0)))
+        return self.at(point.load_factor).excess(z) / max(LEAST, float(np.abs(forces).max(initial=0.0)))
 
     def at(self, load_factor: float) -> RubbingEquations:
         """The equations at the inputs and parameters of a load factor."""
@@ -144,20 +149,20 @@ class RubbingArrangement(Arrangement):
         before, after = (self.equations.friction(self.z(point)) for point in (last, end))
         return np.asarray(np.sum(before * after, axis=1) < 0.0)
 
-    def might_stick(self, point: ArcPoint, slips: Sequence[bool | None]) -> int | None:
-        """Index of a slipping contact that might stick beside this point as well as slip on; None without any."""
+    def undecided(self, point: ArcPoint) -> int | None:
+        """Index of a contact at the limit of friction that might stick as well as slip beside a point; None without."""
         z = self.z(point)
         here = self.at(point.load_factor)
-        sliding = [number for number, slipping in enumerate(slips) if slipping]
+        limiting = np.flatnonzero(self.excess(point) > -BESIDE).tolist()
 
         def sign(sticking: int | None) -> float:
             beside = z.copy()
-            for number in sliding:
-                beside[self._friction_entries(number)] *= 1.0 - BESIDE if number == sticking else 1.0 + BESIDE
+            for number in limiting:
+                beside[self._friction_entries(number)] *= 1.0 - AWAY if number == sticking else 1.0 + AWAY
             return float(np.linalg.slogdet(here.jacobian(beside, here.given))[0])
 
-        all_slip = sign(None) if sliding else 0.0
-        return next((number for number in sliding if sign(number) != all_slip), None)
+        all_slip = sign(None) if limiting else 0.0
+        return next((number for number in limiting if sign(number) != all_slip), None)
 
     def _friction_entries(self, number: int, count: int = 1) -> slice:
         """Entries in z of the friction of contacts that rub, from one of them on."""
@@ -166,10 +171,11 @@ class RubbingArrangement(Arrangement):
 
     def shares(self, point: ArcPoint) -> bool:
         """Whether forces of friction are determined in part only."""
-        count = len(self.equations.rubbing)
-        if count < 2:
-            return False
         here = self.at(point.load_factor)
+        count = len(self.equations.rubbing)
+        forces = np.abs(self.equations.parts(self.z(point))[1])
+        if count < 2 or np.abs(self.equations.friction(self.z(point))).max() <= BESIDE * forces.max():
+            return False
         scale, rows = self._scales
         matrix = rows[:, None] * here.jacobian(self.z(point), here.given) * scale
         own = self._friction_entries(0, count)
@@ -404,7 +410,7 @@ class RubbingTravel(Travel):
         """Count slides from a point on, keep what sticks there, and tell what friction leaves open."""
         arrangement = self.arrangements[-1] = guard.arrangement = self.arrangement.after(point)
         self.slips.append(tuple(bool(slips) for slips in self.sliding))
-        number = arrangement.might_stick(point, self.sliding)
+        number = arrangement.undecided(point)
         if number is not None:
             touch = arrangement.equations.state.touches[arrangement.equations.rubbing[number]]
             self.tell(NOT_UNIQUE, touch, point.load_factor)
