@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -34,8 +35,8 @@ from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 
-STIFFNESS = 10.0
-"""k, in EI/ℓ³: it decides only how Newton's method goes from sticking to slipping."""
+STIFFNESSES = (1e4, 1e1, 1e7)
+"""k, in EI/ℓ³, the first one first: it decides only how Newton's method goes from sticking to slipping and back."""
 
 GIVES = 1e-11
 """Compliance of a surface along itself to changes of the force, in ℓ³/EI."""
@@ -46,8 +47,8 @@ ROUNDING = 1e-12
 AXES = 3
 """Components of a force."""
 
-HISTORY = 28
-"""Numbers of a touching section at the last point: an abscissa; pose there and its derivative by X; friction."""
+HISTORY = 29
+"""Numbers of a touching section at the last point: an abscissa; pose there and its derivative by X; friction; k."""
 
 NEAR = 0.05
 """Distance of places of contact on one obstacle at successive points below which they may be one contact."""
@@ -116,7 +117,7 @@ class Before:
     friction: tuple[tuple[Touch, FloatArray], ...]
 
     def numbers(self, touch: Touch, body: str | None) -> FloatArray:
-        """What a contact remembers, shape (HISTORY,)."""
+        """What a contact remembers, shape (HISTORY − 1,)."""
         pose = self.rods[touch.owner].at(float(touch.start), None if body is None else self.bodies[body])
         return np.concatenate([[float(touch.start)], pose, self.force(touch)])
 
@@ -194,7 +195,7 @@ class RubbingWritten(Written):
         moved = position - start + (rotation @ turned.T - ca.DM.eye(3)) @ arm
         slide = along_surface(moved, normal) / rod.discrete.properties.length
         gives = GIVES * along_surface(friction - before[25:28], normal)
-        held = along_surface(friction, normal) - STIFFNESS * (slide + gives)
+        held = along_surface(friction, normal) - before[28] * (slide + gives)
         size = ca.sqrt(ca.sumsqr(held) + ROUNDING**2)
         limit = obstacle.coefficients[0] * ca.fmax(push, 0)
         return friction - ca.fmin(1, limit / size) * held, size - limit
@@ -206,15 +207,17 @@ class RubbingEquations(ContactEquations):
 
     Attributes:
         before: the last point of the path; None until there is one, when only poses have a meaning.
+        stiffness: k.
     """
 
     before: Before | None = None
+    stiffness: float = STIFFNESSES[0]
 
-    def after(self, before: Before) -> RubbingEquations:
-        """These equations after another point of the path, with the same functions."""
+    def changed(self, **changes: Any) -> RubbingEquations:
+        """These equations after another point of the path, or with another k, with the same functions."""
         assert self._functions and self._by_arguments and self._excess
-        other = replace(self, before=before)
-        vars(other).update({name: value for name, value in vars(self).items() if name != "before"})
+        other = replace(self, **changes)
+        vars(other).update({name: value for name, value in vars(self).items() if name not in changes})
         return other
 
     def loaded(self, scene: scenes.Scene, state: ContactState, modes: Mapping[str, int]) -> scenes.Scene:
@@ -257,7 +260,8 @@ class RubbingEquations(ContactEquations):
         for number in self.rubbing:
             touch = state.touches[number]
             body = obstacle_of(self.scene, touch.obstacle).body
-            yield np.zeros(HISTORY) if self.before is None else self.before.numbers(touch, body)
+            own = np.zeros(HISTORY - 1) if self.before is None else self.before.numbers(touch, body)
+            yield np.append(own, self.stiffness)
 
     def _write(self) -> Written:
         plain = super()._write()

@@ -35,6 +35,7 @@ from cosserat_casadi.paths.friction_path import SHORTEST, WITHIN
 from cosserat_casadi.paths.rubbing_equations import (
     AXES,
     Before,
+    STIFFNESSES,
     LastShape,
     RubbingEquations,
     is_same_contact,
@@ -44,7 +45,7 @@ from cosserat_casadi.paths.rubbing_equations import (
 CORRECTIONS = 20
 """Most steps of Newton's method at an increment, in which contacts change between sticking and slipping."""
 
-HOLDS = 1e-9
+HOLDS = 1e-8
 """Force relative to what friction can hold that counts as rounding."""
 
 LEAST = 1e-3
@@ -103,9 +104,12 @@ class RubbingArrangement(Arrangement):
 
     def after(self, point: ArcPoint) -> RubbingArrangement:
         """The arrangement after another point of the path, with the same functions and units."""
+        return self.changed(before=self.before(self.z(point), point.load_factor))
+
+    def changed(self, **changes: Any) -> RubbingArrangement:
+        """The arrangement with changed equations, with the same functions and units."""
         assert self._scales and self._poses
-        z = self.z(point)
-        other = replace(self, equations=self.equations.after(self.before(z, point.load_factor)))
+        other = replace(self, equations=self.equations.changed(**changes))
         vars(other).update({name: value for name, value in vars(self).items() if name not in ("equations", "curve")})
         return other
 
@@ -226,7 +230,7 @@ class RubbingPath(ContactPath):
         """Unknowns, forces and places at another factor, after the point before this one."""
         before = self._rubbing(index - 1).before(self.x[index - 1], float(self.factor[index - 1]))
         arrangement = self._rubbing(index)
-        arrangement = replace(arrangement, equations=arrangement.equations.after(before))
+        arrangement = arrangement.changed(before=before)
         found = arrangement.curve.at(start / arrangement.scale, factor)
         return None if found is None else arrangement.scale * found
 
@@ -291,7 +295,12 @@ class RubbingTravel(Travel):
         """Enter the next arrangement; contacts that go on keep sticking or slipping."""
         before = self.arrangement
         _, last = self.points[-1]
-        entry = super()._change(guard)
+        entry = None
+        for stiffness in STIFFNESSES:
+            self.arrangements[-1] = before.changed(stiffness=stiffness)
+            entry = super()._change(guard)
+            if entry is not None:
+                break
         if entry is not None:
             touches = before.state(before.z(last)).touches
             known = {touches[number]: slips for number, slips in zip(before.equations.rubbing, self.sliding, strict=True)}
@@ -321,6 +330,7 @@ class RubbingTravel(Travel):
         end = self._solved(points, factor)
         if end is None:
             return None
+        guard.arrangement = self.arrangement
         arc = Arc(self.arrangement.curve, last, end)
         broken = self._broken_loose(arc)
         if broken is not None:
@@ -352,15 +362,18 @@ class RubbingTravel(Travel):
     def _solved(self, points: list[ArcPoint], factor: float) -> ArcPoint | None:
         """The point at a factor: sections that slip go on, so the last increment is extrapolated first."""
         last = points[-1]
-        curve = self.arrangement.curve
         starts = [last.x]
         if len(points) > 1 and last.load_factor > points[-2].load_factor:
             share = (factor - last.load_factor) / (last.load_factor - points[-2].load_factor)
             starts.insert(0, last.x + share * (last.x - points[-2].x))
-        for start in starts:
-            x = curve.at(start, factor)
-            if x is not None and self._way(last.x, x) <= self.settings.longest:
-                return curve.point(np.append(x, factor), last.tangent, last.length + factor - last.load_factor)
+        now = self.arrangement.equations.stiffness
+        for stiffness in (now, *(other for other in STIFFNESSES if other != now)):
+            self.arrangements[-1] = arrangement = self.arrangement.changed(stiffness=stiffness)
+            for start in starts:
+                x = arrangement.curve.at(start, factor)
+                if x is not None and self._way(last.x, x) <= self.settings.longest:
+                    length = last.length + factor - last.load_factor
+                    return arrangement.curve.point(np.append(x, factor), last.tangent, length)
         return None
 
     def _way(self, before: FloatArray, after: FloatArray) -> float:
