@@ -31,6 +31,7 @@ from cosserat_casadi.paths.contact_curve import Arrangement
 from cosserat_casadi.paths.contact_path import ContactPath, Guard, Travel, beginning, path_contact, record
 from cosserat_casadi.paths.contact_transitions import ArrangementEntry
 from cosserat_casadi.paths.equilibrium_path import InputChange, PathContact, PathEvent, path_along
+from cosserat_casadi.paths.margins import Watch
 from cosserat_casadi.paths.friction_path import SHORTEST, WITHIN
 from cosserat_casadi.paths.rubbing_equations import (
     AXES,
@@ -66,6 +67,10 @@ UNDETERMINED = 1e-8
 LIES = (
     " {owner!r} lies down on {obstacle!r}: friction along a line of contact is not followed. Give the obstacle a "
     "width, m, or leave its friction out."
+)
+
+WEDGES = (
+    " Friction may wedge {owner!r} where it comes to {obstacle!r}: the force then jumps, and no equilibrium follows."
 )
 
 SHARED = (
@@ -301,6 +306,9 @@ class RubbingTravel(Travel):
             entry = super()._change(guard)
             if entry is not None:
                 break
+        if entry is None and guard.crossed is not None and guard.crossed[0].watch is Watch.GAP:
+            owner, obstacle = guard.crossed[0].pair
+            self.tell(WEDGES, Touch.point(obstacle, owner, guard.crossed[1]))
         if entry is not None:
             touches = before.state(before.z(last)).touches
             known = {touches[number]: slips for number, slips in zip(before.equations.rubbing, self.sliding, strict=True)}

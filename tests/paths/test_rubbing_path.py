@@ -1,0 +1,191 @@
+"""Paths with friction of exact contact: against shooting, rolling, motions, and what friction leaves open."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.integrate import solve_ivp
+
+from cosserat_casadi import build, follow, read_scene, scene_from_dict, simulate
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.numerics.arclength import ArcSettings
+from cosserat_casadi.numerics.trace import PathOutcome
+from cosserat_casadi.paths.rubbing_path import RubbingPath
+from tests.conftest import ROOT
+from tests.paths.test_contact_path import root
+
+BENDING, FRICTION = 0.5, 0.3
+
+
+def tables(radius: float = 0.0, friction: Any = FRICTION, floor: float = -0.05, slope: float = 0.0) -> dict[str, Any]:
+    """A clamped rod of 1 m above a floor, with a push at its tip and a base that may move."""
+    rod: dict[str, Any] = {"name": "rod", "length": 1.0, "strain": "planar", "base": {"tangent": [1, 0, -slope]}}
+    if radius:
+        modulus = 4 * BENDING / (np.pi * radius**4)
+        rod["section"] = {"shape": "circle", "radius": radius}
+        rod["material"] = {"youngs_modulus": modulus, "poisson_ratio": 0.3, "density": 1e-9}
+    else:
+        rod["stiffness"] = {"bending_y": BENDING}
+    obstacle = {"name": "floor", "kind": "plane", "point": [0, 0, floor], "normal": [0, 0, 1], "friction": friction}
+    return {
+        "schema": 1,
+        "rods": [rod],
+        "loads": [{"name": "push", "kind": "tip_wrench", "rod": "rod", "force": [0, 0, 0]}],
+        "inputs": ["rod.base.position", "push.force"],
+        "obstacles": [obstacle],
+        "accuracy": {"modes": 8},
+    }
+
+
+def followed(model: Model, name: str, value: list[float], first: RubbingPath | None = None, **options: Any) -> RubbingPath:
+    path = follow(model, name, value, first=first, **options)
+    assert isinstance(path, RubbingPath)
+    return path
+
+
+def kinds(path: RubbingPath) -> list[str]:
+    return [event.kind for event in path.events]
+
+
+def bent(curvature: float, force: FloatArray, angle: float = 0.0) -> FloatArray:
+    """x, z, θ and κ at the tip of a clamped elastica, whose tip is pulled by a force."""
+
+    def rate(_s: float, state: FloatArray) -> list[float]:
+        _, _, angle, curvature = state
+        shear = force[0] * np.sin(angle) - force[1] * np.cos(angle)
+        return [np.cos(angle), np.sin(angle), curvature, shear / BENDING]
+
+    return np.asarray(solve_ivp(rate, (0.0, 1.0), [0.0, 0.0, angle, curvature], "DOP853", rtol=1e-12, atol=1e-13).y[:, -1])
+
+
+def test_a_tip_sticks_to_the_angle_of_friction_and_slides_beyond_it() -> None:
+    """While it sticks the rod keeps its shape, and friction is the pull; then friction is the coefficient times the push."""
+    model = build(scene_from_dict(tables()))
+    pressed = followed(model, "push.force", [0, 0, -1.0])
+    assert pressed.converged and kinds(pressed) == ["touch"]
+    (before,) = pressed.contacts(-1)
+    assert before.friction is not None and not before.slips
+    assert_allclose(before.friction, 0.0, rtol=0, atol=1e-9)
+    path = followed(model, "push.force", [0.6, 0, -1.0], pressed)
+    assert path.converged and kinds(path) == ["slip"]
+    assert_allclose(path.events[0].factor, FRICTION * before.ends[0] / 0.6, rtol=1e-6, atol=0)
+    check_slipping_tip(path, 0.0, np.array([0.6, -1.0]), -1.0)
+
+
+@pytest.mark.parametrize("radius", [0.0, 0.02])
+def test_a_tip_that_is_dragged_bears_the_moment_of_friction(radius: float) -> None:
+    path = dragged(radius)
+    assert path.converged and kinds(path) == ["slip"]
+    check_slipping_tip(path, radius, np.array([0.0, -1.0]), 1.0)
+
+
+def check_slipping_tip(path: RubbingPath, radius: float, push: FloatArray, sign: float) -> None:
+    """Hold the end of a path, with a tip that slips on the floor, against shooting with friction of this sign."""
+
+    def end(guess: FloatArray) -> FloatArray:
+        curvature, normal = guess
+        return bent(curvature, push + [sign * FRICTION * normal, normal])
+
+    def missed(guess: FloatArray) -> FloatArray:
+        _, z, _, curvature = end(guess)
+        # Friction t acts the radius below the centre of the tip: the moment about −y is radius times t.
+        return np.array([z + 0.05 - radius, curvature - radius * sign * FRICTION * guess[1] / BENDING])
+
+    found = root(missed, [-0.2, 0.9])
+    force = np.array([sign * FRICTION * found[1], 0.0, found[1]])
+    (contact,) = path.contacts(-1)
+    assert contact.slips and contact.friction is not None
+    assert_allclose([contact.friction[0], 0.0, contact.ends[0]], force, rtol=1e-7, atol=0)
+    assert_allclose(contact.friction[1:], 0.0, rtol=0, atol=1e-12)
+    base = path.position(0.0)[-1]
+    assert_allclose(path.tip().position[-1] - base, [end(found)[0], 0, radius - 0.05], rtol=0, atol=1e-7)
+    solution = path.solution(-1)
+    assert solution.converged
+    assert_allclose(solution.contacts[0].force, force, rtol=1e-7, atol=1e-12)
+    assert_allclose(solution.base_wrench().force, -force - [push[0], 0, push[1]], rtol=0, atol=1e-9)
+
+
+def test_files_tell_friction_and_the_event_of_the_slip() -> None:
+    path = dragged()
+    (event,) = path.to_dict()["events"]
+    assert event["kind"] == "slip" and event["contact"]["rod"] == "rod"
+    last = path.to_dict()["path"][-1]["contacts"]
+    assert [(contact["slips"], contact["obstacle"]) for contact in last] == [(True, "floor")]
+    assert_allclose(np.linalg.norm(last[0]["friction"]), FRICTION * last[0]["point_forces"][0], rtol=1e-9, atol=0)
+
+
+@cache
+def dragged(radius: float = 0.0) -> RubbingPath:
+    """The tip is pressed down, and then the base is pulled back until the tip slides."""
+    model = build(scene_from_dict(tables(radius)))
+    pressed = followed(model, "push.force", [0, 0, -1.0])
+    return followed(model, "rod.base.position", [-0.05, 0, 0], pressed)
+
+
+def test_a_load_that_goes_back_leaves_a_contact_that_sticks() -> None:
+    """It slides back only when friction has turned; each increment takes energy."""
+    out = dragged()
+    back = followed(out.model, "rod.base.position", [0.05, 0, 0], out)
+    assert back.converged and kinds(back) == ["stick", "slip"]
+    frictions = [path.contacts(-1)[0].friction for path in (out, back)]
+    assert frictions[0] is not None and frictions[1] is not None
+    assert frictions[0][0] > 0.0 > frictions[1][0]
+    # With one shape slid to and fro, but for the direction of friction: dragged on, it stays as it is.
+    on = followed(out.model, "rod.base.position", [0.1, 0, 0], back)
+    assert kinds(on) == []
+    assert_allclose(on.tip().position[-1] - back.tip().position[-1], [0.05, 0, 0], rtol=0, atol=1e-9)
+
+
+def test_a_tip_that_sticks_rolls() -> None:
+    """Lowered on a rough floor its centre advances by the radius times the angle, whatever turns it."""
+    radius = 0.02
+    model = build(scene_from_dict(tables(radius, 4.0, -0.75, 1.0)))
+    errors = []
+    for change in (0.1, 0.05):
+        settings = ArcSettings(load_factor_change=change, longest=2.5 * change)
+        path = followed(model, "rod.base.position", [0, 0, -0.2], settings=settings)
+        assert path.converged and kinds(path) == ["touch"]
+        first = int(np.flatnonzero(path.factor == path.events[0].factor)[-1])
+        tips = path.tip()
+        angle = np.arctan2(tips.rotation[:, 2, 2], tips.rotation[:, 0, 2])
+        rolled = tips.position[first:, 0] - tips.position[first, 0] + radius * (angle[first:] - angle[first])
+        errors.append(np.abs(rolled).max())
+        assert angle[-1] - angle[first] < -0.5
+    # Implicit Euler turns the arm by chords.
+    assert errors[0] < 2e-3 * radius and errors[1] < 0.6 * errors[0]
+
+
+def test_a_rod_on_a_rough_bar_rolls_along_it() -> None:
+    """Once it sticks, the place of contact goes along the rod as far as round the bar: what rolls does not slide."""
+    radius = 0.1
+    bar = {"name": "bar", "kind": "capsule", "from": [0.5, -1, -0.15], "to": [0.5, 1, -0.15], "radius": radius}
+    model = build(scene_from_dict(tables() | {"obstacles": [bar | {"friction": 5.0}]}))
+    path = followed(model, "push.force", [0, 0, -2.0])
+    assert path.converged and kinds(path) == ["touch", "stick"]
+    ways = []
+    for index in range(path.events[1].position, len(path.factor)):
+        (contact,) = path.contacts(index)
+        assert not contact.slips
+        centre = path.position(contact.start)[index]
+        ways.append((contact.start, radius * np.arctan2(centre[0] - 0.5, centre[2] + 0.15)))
+    along, round_bar = (np.array(ways)[1:] - ways[0]).T
+    assert along[-1] > 3e-3
+    assert_allclose(round_bar, along, rtol=0, atol=1e-7)
+
+
+def test_what_friction_leaves_open_is_told() -> None:
+    """Above the friction of which a slope of 45° wedges, a tip that is pulled outwards jumps off."""
+    steep = tables(friction=1.5, floor=-0.6, slope=1.0)
+    model = build(scene_from_dict(steep))
+    path = followed(model, "push.force", [3.0, 0, 0])
+    assert path.outcome is PathOutcome.LOAD_STALLED
+    assert "friction does not determine how the path goes on: 'rod' may stick on 'floor'" in path.message
+    inwards = followed(model, "push.force", [-3.0, 0, 0])
+    assert inwards.converged and kinds(inwards) == ["slip"] and "determine" not in inwards.message
+    wedged = followed(build(scene_from_dict(tables(friction=1.5, floor=-0.75, slope=1.0))), "rod.base.position", [0, 0, -0.1])
+    assert wedged.outcome is PathOutcome.CONTACT_UNSETTLED and "Friction may wedge 'rod'" in wedged.message
