@@ -52,6 +52,9 @@ HOLDS = 1e-8
 LEAST = 1e-3
 """Force, in EI/ℓ², to which smaller ones are compared."""
 
+LATE = 1e-6
+"""Depth, relative to the length, with which a rod may begin to touch."""
+
 STICKS = 1e-3
 """Longest increment of the factor in which a contact that slips may stick again."""
 
@@ -99,6 +102,11 @@ class RubbingArrangement(Arrangement):
     """One arrangement of contacts with friction, after one point of a path."""
 
     equations: RubbingEquations
+
+    @property
+    def tolerance(self) -> float:
+        """Relative depth, pull and the like up to which the arrangement is valid: a late touch slides at once."""
+        return min(super().tolerance, LATE)
 
     @cached_property
     def curve(self) -> Curve:
