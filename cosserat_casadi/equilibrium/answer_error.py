@@ -176,7 +176,9 @@ def left_out_friction(scene: Scene) -> str:
 def left_out_on_paths(scene: Scene) -> str:
     """Sentences on friction that acts in motion alone, which paths leave out; empty without such friction."""
     of_bodies = any(obstacle.rubs and (obstacle.bodies or obstacle.disks) for obstacle in scene.obstacles)
-    of_tables = any(obstacle.rubs and obstacle.presses_rods and not obstacle.rubs_on_paths for obstacle in scene.obstacles)
+    of_tables = any(
+        obstacle.rubs and obstacle.presses_rods and not obstacle.rubs_on_paths for obstacle in scene.obstacles
+    )
     of_rods = any(pair.rubs and pair.exact for pair in scene.rod_contacts)
     exact = FRICTION_IN_MOTION if of_tables or of_rods else ""
     return exact + left_out_friction(scene) + (FRICTION_OF_BODIES if of_bodies else "")

@@ -149,23 +149,25 @@ def follow_path(
             alone would have to hold a free rod.
     """
     model = model.at()
-    if first is not None and not isinstance(first, FrictionPath | RubbingPath):
+    continued = RubbingPath if model.scene.touches_exactly else FrictionPath
+    if first is not None and not (model.rubs_on_paths and isinstance(first, continued)):
         problem = "is a path with friction from whose end another one goes on"
         raise SceneError(Problem("first", problem, "leave it out: a path without friction does not depend on the way"))
     followed = _followed(model, name, value, values)
     if model.scene.touches_exactly:
         refuse_held_by_contact(model.scene)
-        path: ContactPath
+        touching: ContactPath
         if model.rubs_on_paths:
             _refuse_branch(branch)
+            assert first is None or isinstance(first, RubbingPath)
             followed = _followed(model, name, value, values, first)
-            path = follow_rubbing_path(followed, settings or ArcSettings(), first=first, progress=progress)
+            touching = follow_rubbing_path(followed, settings or ArcSettings(), first=first, progress=progress)
         else:
-            path = follow_contact_path(followed, branch=branch, settings=settings, progress=progress)
-        message = _sentence(path.outcome, path.factor) + path.stopped_at
+            touching = follow_contact_path(followed, branch=branch, settings=settings, progress=progress)
+        message = _sentence(touching.outcome, touching.factor) + touching.stopped_at
         if model.rubs_on_paths and first is None:
             message += FROM_NOWHERE
-        return _resolved(replace(path, message=message + left_out_on_paths(model.scene)))
+        return _resolved(replace(touching, message=message + left_out_on_paths(model.scene)))
     left_out = left_out_on_paths(model.scene)
     if model.rubs_on_paths:
         _refuse_branch(branch)

@@ -84,7 +84,9 @@ class LastShape:
         weights = chebyshev.interpolation_matrix(intervals, np.array([local]))[0]
         rates = weights @ chebyshev.differentiation_matrix(intervals) / width
         position, tangent = weights @ self.positions[element], rates @ self.positions[element]
-        rotation, turning = (part.full() for part in _ROTATION(*(w @ self.quaternions[element] for w in (weights, rates))))
+        rotation, turning = (
+            part.full() for part in _ROTATION(*(w @ self.quaternions[element] for w in (weights, rates)))
+        )
         if body is not None:
             position, tangent = in_axes_of(body, position), tangent @ body.rotation
             rotation, turning = body.rotation.T @ rotation, body.rotation.T @ turning
@@ -248,7 +250,7 @@ class RubbingEquations(ContactEquations):
     def friction(self, z: FloatArray) -> FloatArray:
         """Dimensionless forces of friction, shape (k, 3), in the axes of the obstacles."""
         _, forces, _ = self.parts(z)
-        return forces[self.pushes :].reshape(-1, AXES)
+        return np.asarray(forces[self.pushes :].reshape(-1, AXES))
 
     def numbers(self, z: FloatArray, given: FloatArray) -> list[FloatArray]:
         """Values of the arguments of the functions of :attr:`written`."""
@@ -272,8 +274,10 @@ class RubbingEquations(ContactEquations):
     def _excess(self) -> ca.Function:
         written = self.written
         assert isinstance(written, RubbingWritten)
-        return ca.Function("excess", written.arguments, [ca.vertcat(*(excess for _, excess in written.laws), ca.MX(0, 1))])
+        return ca.Function(
+            "excess", written.arguments, [ca.vertcat(*(excess for _, excess in written.laws), ca.MX(0, 1))]
+        )
 
     def excess(self, z: FloatArray) -> FloatArray:
         """Force that would hold each contact less what friction can, without unit, shape (k,): above zero it slips."""
-        return self._excess(*self.numbers(z, self.given)).full()[:, 0]
+        return np.asarray(self._excess(*self.numbers(z, self.given)).full()[:, 0])

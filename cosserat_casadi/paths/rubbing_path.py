@@ -12,7 +12,7 @@ Equations, Springer 2012, section 2.3).
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from math import inf
 from typing import Any
 
@@ -31,12 +31,12 @@ from cosserat_casadi.paths.contact_curve import Arrangement
 from cosserat_casadi.paths.contact_path import ContactPath, Guard, Travel, beginning, path_contact, record
 from cosserat_casadi.paths.contact_transitions import ArrangementEntry
 from cosserat_casadi.paths.equilibrium_path import InputChange, PathContact, PathEvent, path_along
-from cosserat_casadi.paths.margins import Watch
 from cosserat_casadi.paths.friction_path import SHORTEST, WITHIN
+from cosserat_casadi.paths.margins import Watch
 from cosserat_casadi.paths.rubbing_equations import (
     AXES,
-    Before,
     STIFFNESSES,
+    Before,
     LastShape,
     RubbingEquations,
     is_same_contact,
@@ -143,6 +143,10 @@ class RubbingArrangement(Arrangement):
         z = self.z(point)
         _, forces, _ = self.equations.parts(z)
         return self.at(point.load_factor).excess(z) / max(LEAST, float(np.abs(forces).max(initial=0.0)))
+
+    def excess_of(self, number: int, point: ArcPoint) -> float:
+        """The :meth:`excess` of one contact."""
+        return float(self.excess(point)[number])
 
     def at(self, load_factor: float) -> RubbingEquations:
         """The equations at the inputs and parameters of a load factor."""
@@ -319,7 +323,9 @@ class RubbingTravel(Travel):
             self.tell(WEDGES, Touch.point(obstacle, owner, guard.crossed[1]))
         if entry is not None:
             touches = before.state(before.z(last)).touches
-            known = {touches[number]: slips for number, slips in zip(before.equations.rubbing, self.sliding, strict=True)}
+            known = {
+                touches[number]: slips for number, slips in zip(before.equations.rubbing, self.sliding, strict=True)
+            }
             after = self.arrangement.state(self.arrangement.z(entry.point)).touches
             self.sliding = [
                 next((slips for touch, slips in known.items() if is_same_contact(after[number], touch)), None)
@@ -415,7 +421,7 @@ class RubbingTravel(Travel):
                 continue
             zero: ArcPoint | None = arc.start
             if first[number] < -HOLDS:
-                zero = arc.zero(lambda point, number=number: float(arrangement.excess(point)[number]))
+                zero = arc.zero(partial(arrangement.excess_of, number))
             if zero is not None and (found is None or zero.load_factor < found[1].load_factor):
                 found = number, zero
         return found

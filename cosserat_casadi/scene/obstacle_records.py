@@ -127,7 +127,7 @@ class ObstacleRecord(Entry):
     friction: Coefficients = Field(
         0.0,
         description="coefficient μ of Coulomb's friction, without unit, or a table of coefficients along "
-        "a rod, back and across it: with width in motion and along paths, without in motion alone",
+        "a rod, back and across it: in motion, and along paths; without a width a table acts in motion alone",
     )
     slip_speed: Positive = Field(
         1e-3,

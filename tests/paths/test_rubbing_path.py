@@ -10,13 +10,12 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
-from cosserat_casadi import build, follow, read_scene, scene_from_dict, simulate
+from cosserat_casadi import build, follow, scene_from_dict
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.arclength import ArcSettings
 from cosserat_casadi.numerics.trace import PathOutcome
 from cosserat_casadi.paths.rubbing_path import RubbingPath
-from tests.conftest import ROOT
 from tests.paths.test_contact_path import root
 
 BENDING, FRICTION = 0.5, 0.3
@@ -42,7 +41,9 @@ def tables(radius: float = 0.0, friction: Any = FRICTION, floor: float = -0.05, 
     }
 
 
-def followed(model: Model, name: str, value: list[float], first: RubbingPath | None = None, **options: Any) -> RubbingPath:
+def followed(
+    model: Model, name: str, value: list[float], first: RubbingPath | None = None, **options: Any
+) -> RubbingPath:
     path = follow(model, name, value, first=first, **options)
     assert isinstance(path, RubbingPath)
     return path
@@ -60,11 +61,13 @@ def bent(curvature: float, force: FloatArray, angle: float = 0.0) -> FloatArray:
         shear = force[0] * np.sin(angle) - force[1] * np.cos(angle)
         return [np.cos(angle), np.sin(angle), curvature, shear / BENDING]
 
-    return np.asarray(solve_ivp(rate, (0.0, 1.0), [0.0, 0.0, angle, curvature], "DOP853", rtol=1e-12, atol=1e-13).y[:, -1])
+    return np.asarray(
+        solve_ivp(rate, (0.0, 1.0), [0.0, 0.0, angle, curvature], "DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+    )
 
 
 def test_a_tip_sticks_to_the_angle_of_friction_and_slides_beyond_it() -> None:
-    """While it sticks the rod keeps its shape, and friction is the pull; then friction is the coefficient times the push."""
+    """While it sticks the rod keeps its shape, and friction balances the pull."""
     model = build(scene_from_dict(tables()))
     pressed = followed(model, "push.force", [0, 0, -1.0])
     assert pressed.converged and kinds(pressed) == ["touch"]
@@ -89,7 +92,7 @@ def check_slipping_tip(path: RubbingPath, radius: float, push: FloatArray, sign:
 
     def end(guess: FloatArray) -> FloatArray:
         curvature, normal = guess
-        return bent(curvature, push + [sign * FRICTION * normal, normal])
+        return bent(curvature, push + np.array([sign * FRICTION * normal, normal]))
 
     def missed(guess: FloatArray) -> FloatArray:
         _, z, _, curvature = end(guess)
@@ -187,5 +190,7 @@ def test_what_friction_leaves_open_is_told() -> None:
     assert "friction does not determine how the path goes on: 'rod' may stick on 'floor'" in path.message
     inwards = followed(model, "push.force", [-3.0, 0, 0])
     assert inwards.converged and kinds(inwards) == ["slip"] and "determine" not in inwards.message
-    wedged = followed(build(scene_from_dict(tables(friction=1.5, floor=-0.75, slope=1.0))), "rod.base.position", [0, 0, -0.1])
+    wedged = followed(
+        build(scene_from_dict(tables(friction=1.5, floor=-0.75, slope=1.0))), "rod.base.position", [0, 0, -0.1]
+    )
     assert wedged.outcome is PathOutcome.CONTACT_UNSETTLED and "Friction may wedge 'rod'" in wedged.message
