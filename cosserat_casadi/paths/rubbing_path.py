@@ -281,7 +281,7 @@ class RubbingTravel(Travel):
         self._reached(first, guard)
         # Behind an entry against the load nothing follows while the load grows.
         if first.tangent[-1] < 0.0:
-            traced.outcome = PathOutcome.LOAD_STALLED
+            traced.outcome = PathOutcome.CONTACT_UNSETTLED
         self.step = self.step or self.settings.first
         while traced.outcome is None and guard.crossed is None:
             last = traced.points[-1]

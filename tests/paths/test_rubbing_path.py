@@ -10,13 +10,15 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
-from cosserat_casadi import build, follow, scene_from_dict
+from cosserat_casadi import build, follow, parse_scene, read_scene, scene_from_dict, simulate
+from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.arclength import ArcSettings
 from cosserat_casadi.numerics.trace import PathOutcome
-from cosserat_casadi.paths.rubbing_path import RubbingPath
-from tests.paths.test_contact_path import root
+from cosserat_casadi.paths.rubbing_path import RubbingArrangement, RubbingPath
+from tests.conftest import ROOT
+from tests.paths.test_contact_path import TABLE, root
 
 BENDING, FRICTION = 0.5, 0.3
 
@@ -42,7 +44,7 @@ def tables(radius: float = 0.0, friction: Any = FRICTION, floor: float = -0.05, 
 
 
 def followed(
-    model: Model, name: str, value: list[float], first: RubbingPath | None = None, **options: Any
+    model: Model, name: str, value: list[float] | float, first: RubbingPath | None = None, **options: Any
 ) -> RubbingPath:
     path = follow(model, name, value, first=first, **options)
     assert isinstance(path, RubbingPath)
@@ -144,6 +146,7 @@ def test_a_load_that_goes_back_leaves_a_contact_that_sticks() -> None:
     assert_allclose(on.tip().position[-1] - back.tip().position[-1], [0.05, 0, 0], rtol=0, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_tip_that_sticks_rolls() -> None:
     """Lowered on a rough floor its centre advances by the radius times the angle, whatever turns it."""
     radius = 0.02
@@ -181,6 +184,63 @@ def test_a_rod_on_a_rough_bar_rolls_along_it() -> None:
     assert_allclose(round_bar, along, rtol=0, atol=1e-7)
 
 
+def test_the_jacobian_is_that_of_differences() -> None:
+    """With a place that moves along a round rod, which sticks or slips after a point at another place."""
+    bar = {"name": "bar", "kind": "capsule", "from": [0.4, -0.5, -0.14], "to": [0.5, 0.5, -0.14], "radius": 0.1}
+    scene = tables(0.02) | {"obstacles": [bar | {"friction": FRICTION}], "accuracy": {"modes": 4}}
+    scene["rods"][0]["strain"] = "kirchhoff"
+    path = followed(build(scene_from_dict(scene)), "push.force", [0, 0, -0.5])
+    arrangement = path.arrangements[-1]
+    assert isinstance(arrangement, RubbingArrangement)
+    before = arrangement.before(path.x[-2], float(path.factor[-2]))
+    here = arrangement.changed(before=before, stiffness=10.0).at(1.0)
+    rng = np.random.default_rng(3)
+    for push, sticks in ((1.0, False), (3.0, True)):
+        z = path.x[-1].copy()
+        z[here.nominal.model.size] *= push
+        assert (here.excess(z)[0] < 0.0) == sticks
+        way = rng.normal(size=len(z))
+        step = 1e-6
+        ahead, behind = (here.residual(z + change * way, here.given) for change in (step, -step))
+        difference = (ahead - behind) / (2 * step)
+        derivative = here.jacobian(z, here.given) @ way
+        assert_allclose(derivative, difference, rtol=0, atol=1e-6 * np.abs(difference).max())
+
+
+def test_an_obstacle_on_a_body_hands_friction_on() -> None:
+    """The finger that carries the disk bears the reaction to the force and the friction on the other one."""
+    changes = ["accuracy.modes=4", "rim.friction=0.3"]
+    path = followed(build(read_scene(ROOT / "examples" / "finger_on_finger.toml", changes)), "flexor.tension", 2.5)
+    assert path.converged
+    end = path.solution(-1)
+    (contact,) = end.contacts
+    (own,) = path.contacts(-1)
+    assert own.slips and own.friction is not None
+    assert_allclose(np.linalg.norm(own.friction), 0.3 * own.ends[0], rtol=1e-9, atol=0)
+    assert_allclose(np.linalg.norm(contact.force), np.hypot(1.0, 0.3) * own.ends[0], rtol=1e-9, atol=0)
+    assert_allclose(end.base_wrench("upper").force, contact.force, rtol=0, atol=1e-9)
+    assert_allclose(end.base_wrench("lower").force, -contact.force, rtol=0, atol=1e-9)
+
+
+def test_what_is_not_followed_is_said() -> None:
+    """A rod that lies down, and coefficients by direction, for which the path is that without friction."""
+    lying = parse_scene(TABLE, ["table.friction=0.3", "accuracy.modes=6"])
+    path = follow(build(lying), "lift.force", [0, 0, 0.8])
+    assert path.outcome is PathOutcome.NO_START
+    assert "'rod' lies down on 'table': friction along a line of contact is not followed" in path.message
+    paths = []
+    for friction in ({"along": 0.3, "across": 0.1}, 0.0):
+        model = build(scene_from_dict(tables(friction=friction)))
+        paths.append(follow(model, "push.force", [0.3, 0, -1.0]))
+    assert "by a table of coefficients, acts in motion alone" in paths[0].message and "table" not in paths[1].message
+    assert_allclose(paths[0].tip().position[-1], paths[1].tip().position[-1], rtol=0, atol=1e-12)
+    with pytest.raises(SceneError, match="branch"):
+        follow(dragged().model, "push.force", [0, 0, -1.0], branch=1)
+    with pytest.raises(SceneError, match="does not depend on the way"):
+        follow(paths[1].model, "push.force", [0, 0, -1.0], first=dragged())
+
+
+@pytest.mark.slow
 def test_what_friction_leaves_open_is_told() -> None:
     """Above the friction of which a slope of 45° wedges, a tip that is pulled outwards jumps off."""
     steep = tables(friction=1.5, floor=-0.6, slope=1.0)
@@ -194,3 +254,81 @@ def test_what_friction_leaves_open_is_told() -> None:
         build(scene_from_dict(tables(friction=1.5, floor=-0.75, slope=1.0))), "rod.base.position", [0, 0, -0.1]
     )
     assert wedged.outcome is PathOutcome.CONTACT_UNSETTLED and "Friction may wedge 'rod'" in wedged.message
+
+
+@pytest.mark.slow
+def test_sections_that_share_a_force_are_told() -> None:
+    """A nearly straight rod, clamped and inextensible, is held at two pegs: only the sum along it is determined."""
+    peg = {"kind": "capsule", "radius": 0.05, "friction": FRICTION}
+    above = peg | {"name": "above", "from": [0.4, -1, 0.05 + 2e-7], "to": [0.4, 1, 0.05 + 2e-7]}
+    below = peg | {"name": "below", "from": [0.8, -1, -0.05 - 1e-7], "to": [0.8, 1, -0.05 - 1e-7]}
+    scene = tables() | {"obstacles": [above, below]}
+    scene["rods"][0]["stiffness"] = {"bending_y": 50.0}
+    pressed = followed(build(scene_from_dict(scene)), "push.force", [0, 0, -1.0])
+    pulled = followed(pressed.model, "push.force", [0.5, 0, -1.0], pressed)
+    assert pulled.converged
+    assert "several sections stick that share a force along the rod" in pressed.message + pulled.message
+
+
+@pytest.mark.slow
+def test_increments_are_refined_with_the_modes() -> None:
+    changes = ["bar.friction=0.3", "accuracy.tolerance=1e-3"]
+    path = follow(read_scene(ROOT / "examples" / "rod_over_bar.toml", changes), "push.force", [0, 0, -2.0])
+    assert path.converged and path.error_estimate is not None and path.error_estimate < 1e-5
+    finer = ArcSettings(first=0.02 / 16, load_factor_change=0.1 / 16)
+    closer = follow(path.model, "push.force", [0, 0, -2.0], settings=finer)
+    assert_allclose(path.tip().position[-1], closer.tip().position[-1], rtol=0, atol=2e-6)
+
+
+@pytest.mark.slow
+def test_a_slow_damped_motion_ends_on_the_path() -> None:
+    """A rod is pressed over an oblique bar on which it slides; the motion has the friction of steps in C."""
+    radius, duration, push = 0.02, 20.0, [0, 0, -1.0]
+    modulus = 4 * BENDING / (np.pi * radius**4)
+    rod = {
+        "name": "rod",
+        "length": 1.0,
+        "strain": "kirchhoff",
+        "section": {"shape": "circle", "radius": radius},
+        "material": {"youngs_modulus": modulus, "poisson_ratio": 0.3, "density": 100.0},
+        "base": {"tangent": [1, 0, 0]},
+        "damping": {"retardation_time": 0.2},
+    }
+    bar = {"name": "bar", "kind": "capsule", "from": [0.4, -0.5, -0.14], "to": [0.5, 0.5, -0.14], "radius": 0.1}
+    scene = tables() | {"rods": [rod], "obstacles": [bar | {"friction": FRICTION}]}
+    del scene["inputs"]
+    path = followed(build(scene_from_dict(scene)), "push.force", push)
+    values = [[0, 0, 0], push, push]
+    scene["motions"] = [{"input": "push.force", "times": [0, duration - 5, duration], "values": values}]
+    scene["simulation"] = {"duration": duration, "step": 0.05, "frames": 21}
+    motion = simulate(build(scene_from_dict(scene).with_motion_inputs(), moving=True))
+    assert motion.converged, motion.message
+    (moved,) = motion.contacts[-1]
+    (resting,) = path.contacts(-1)
+    assert moved.friction is not None and resting.friction is not None
+    assert_allclose(np.linalg.norm(moved.force), resting.ends[0], rtol=3e-3, atol=0)
+    assert_allclose(moved.friction, resting.friction, rtol=0, atol=3e-3 * np.linalg.norm(resting.friction))
+    assert_allclose(moved.at, resting.start, rtol=0, atol=2e-4)
+
+
+@pytest.mark.slow
+def test_smooth_friction_tends_to_it() -> None:
+    """A tip on a floor is dragged along by its base: the thinner the layer, the nearer."""
+    errors = []
+    exact = None
+    for width in (None, 4e-3, 1e-3):
+        scene = tables()
+        if width is not None:
+            scene["obstacles"][0] |= {"width": width, "stiffness": 1000 / width}
+            scene["accuracy"] = {"modes": 10, "nodes": 40}
+        model = build(scene_from_dict(scene))
+        pressed = follow(model, "push.force", [0, 0, -2.0])
+        lifted = follow(pressed.model, "rod.base.position", [0, 0, 0.1], first=pressed)
+        assert lifted.converged
+        (contact,) = lifted.solution(-1).contacts
+        if exact is None:
+            exact = contact.force
+            assert kinds(lifted) == ["slip"]
+        else:
+            errors.append(np.linalg.norm(contact.force - exact) / np.linalg.norm(exact))
+    assert errors[0] < 1e-2 and errors[1] < errors[0] / 3
