@@ -326,9 +326,12 @@ class RubbingTravel(Travel):
             known = {
                 touches[number]: slips for number, slips in zip(before.equations.rubbing, self.sliding, strict=True)
             }
+            added = entry.change.grows.number if entry.change.kind == "touch" else None
             after = self.arrangement.state(self.arrangement.z(entry.point)).touches
             self.sliding = [
-                next((slips for touch, slips in known.items() if is_same_contact(after[number], touch)), None)
+                None
+                if number == added
+                else next((known[own] for own in known if is_same_contact(after[number], own)), None)
                 for number in self.arrangement.equations.rubbing
             ]
         return entry

@@ -18,6 +18,7 @@ from cosserat_casadi.numerics.arclength import ArcSettings
 from cosserat_casadi.numerics.trace import PathOutcome
 from cosserat_casadi.paths.rubbing_path import RubbingArrangement, RubbingPath
 from tests.conftest import ROOT
+from tests.families import mostly_slow
 from tests.paths.test_contact_path import TABLE, root
 
 BENDING, FRICTION = 0.5, 0.3
@@ -82,7 +83,7 @@ def test_a_tip_sticks_to_the_angle_of_friction_and_slides_beyond_it() -> None:
     check_slipping_tip(path, 0.0, np.array([0.6, -1.0]), -1.0)
 
 
-@pytest.mark.parametrize("radius", [0.0, 0.02])
+@pytest.mark.parametrize("radius", mostly_slow([0.0, 0.02], quick=[0.02]))
 def test_a_tip_that_is_dragged_bears_the_moment_of_friction(radius: float) -> None:
     path = dragged(radius)
     assert path.converged and kinds(path) == ["slip"]
@@ -116,7 +117,7 @@ def check_slipping_tip(path: RubbingPath, radius: float, push: FloatArray, sign:
 
 
 def test_files_tell_friction_and_the_event_of_the_slip() -> None:
-    path = dragged()
+    path = dragged(0.02)
     (event,) = path.to_dict()["events"]
     assert event["kind"] == "slip" and event["contact"]["rod"] == "rod"
     last = path.to_dict()["path"][-1]["contacts"]
@@ -132,6 +133,7 @@ def dragged(radius: float = 0.0) -> RubbingPath:
     return followed(model, "rod.base.position", [-0.05, 0, 0], pressed)
 
 
+@pytest.mark.slow
 def test_a_load_that_goes_back_leaves_a_contact_that_sticks() -> None:
     """It slides back only when friction has turned; each increment takes energy."""
     out = dragged()
@@ -166,6 +168,7 @@ def test_a_tip_that_sticks_rolls() -> None:
     assert errors[0] < 2e-3 * radius and errors[1] < 0.6 * errors[0]
 
 
+@pytest.mark.slow
 def test_a_rod_on_a_rough_bar_rolls_along_it() -> None:
     """Once it sticks, the place of contact goes along the rod as far as round the bar: what rolls does not slide."""
     radius = 0.1
@@ -207,6 +210,7 @@ def test_the_jacobian_is_that_of_differences() -> None:
         assert_allclose(derivative, difference, rtol=0, atol=1e-6 * np.abs(difference).max())
 
 
+@pytest.mark.slow
 def test_an_obstacle_on_a_body_hands_friction_on() -> None:
     """The finger that carries the disk bears the reaction to the force and the friction on the other one."""
     changes = ["accuracy.modes=4", "rim.friction=0.3"]
@@ -235,9 +239,9 @@ def test_what_is_not_followed_is_said() -> None:
     assert "by a table of coefficients, acts in motion alone" in paths[0].message and "table" not in paths[1].message
     assert_allclose(paths[0].tip().position[-1], paths[1].tip().position[-1], rtol=0, atol=1e-12)
     with pytest.raises(SceneError, match="branch"):
-        follow(dragged().model, "push.force", [0, 0, -1.0], branch=1)
+        follow(dragged(0.02).model, "push.force", [0, 0, -1.0], branch=1)
     with pytest.raises(SceneError, match="does not depend on the way"):
-        follow(paths[1].model, "push.force", [0, 0, -1.0], first=dragged())
+        follow(paths[1].model, "push.force", [0, 0, -1.0], first=dragged(0.02))
 
 
 @pytest.mark.slow
