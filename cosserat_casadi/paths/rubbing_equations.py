@@ -119,7 +119,7 @@ class Before:
     friction: tuple[tuple[Touch, FloatArray], ...]
 
     def numbers(self, touch: Touch, body: str | None) -> FloatArray:
-        """What a contact remembers, shape (HISTORY − 1,)."""
+        """Numbers of a contact at the last point, but for k, shape (HISTORY − 1,)."""
         pose = self.rods[touch.owner].at(float(touch.start), None if body is None else self.bodies[body])
         return np.concatenate([[float(touch.start)], pose, self.force(touch)])
 
@@ -165,7 +165,7 @@ class RubbingWritten(Written):
 
     @cached_property
     def laws(self) -> list[tuple[Matrix, Matrix]]:
-        """For each contact that rubs its law, 3×1, and the force that would hold it less what friction can, 1×1."""
+        """Law of each contact that rubs, 3×1, and the force that would hold it less what friction can, 1×1."""
         _, forces, _ = self.unknowns
         found: list[tuple[Matrix, Matrix]] = []
         touching = [

@@ -195,7 +195,7 @@ class RubbingArrangement(Arrangement):
         here = self.at(point.load_factor)
         count = len(self.equations.rubbing)
         forces = np.abs(self.equations.parts(self.z(point))[1])
-        if count < 2 or np.abs(self.equations.friction(self.z(point))).max() <= BESIDE * forces.max():
+        if np.abs(self.equations.friction(self.z(point))).max() <= BESIDE * forces.max():
             return False
         scale, rows = self._scales
         matrix = rows[:, None] * here.jacobian(self.z(point), here.given) * scale
@@ -328,12 +328,10 @@ class RubbingTravel(Travel):
             }
             added = entry.change.grows.number if entry.change.kind == "touch" else None
             after = self.arrangement.state(self.arrangement.z(entry.point)).touches
-            self.sliding = [
-                None
-                if number == added
-                else next((known[own] for own in known if is_same_contact(after[number], own)), None)
-                for number in self.arrangement.equations.rubbing
-            ]
+            self.sliding = []
+            for number in self.arrangement.equations.rubbing:
+                same = [slips for own, slips in known.items() if is_same_contact(after[number], own)]
+                self.sliding.append(same[0] if same and number != added else None)
         return entry
 
     def _admits(self, state: ContactState) -> bool:
@@ -452,7 +450,7 @@ class RubbingTravel(Travel):
         if number is not None:
             touch = arrangement.equations.state.touches[arrangement.equations.rubbing[number]]
             self.tell(NOT_UNIQUE, touch, point.load_factor)
-        if arrangement.shares(point):
+        if self.sliding.count(False) > 1 and arrangement.shares(point):
             self.tell(SHARED, factor=point.load_factor)
 
 
