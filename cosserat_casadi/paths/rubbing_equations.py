@@ -39,7 +39,10 @@ STIFFNESSES = (1e4, 1e1, 1e7)
 """k, in EI/ℓ³, the first one first: it decides only how Newton's method goes from sticking to slipping and back."""
 
 GIVES = 1e-11
-"""Compliance of a surface along itself to changes of the force, in ℓ³/EI."""
+"""Way, over the length, by which a surface gives along itself to a change of friction by the largest force."""
+
+LEAST = 1e-3
+"""Force, in EI/ℓ², to which smaller ones are compared."""
 
 ROUNDING = 1e-12
 """Force, in EI/ℓ², that counts as zero."""
@@ -47,8 +50,8 @@ ROUNDING = 1e-12
 AXES = 3
 """Components of a force."""
 
-HISTORY = 29
-"""Numbers of a touching section at the last point: an abscissa; pose there and its derivative by X; friction; k."""
+HISTORY = 30
+"""Numbers of a contact: an abscissa; pose there at the last point, and its rates; friction; compliance; k."""
 
 NEAR = 0.05
 """Distance of places of contact on one obstacle at successive points below which they may be one contact."""
@@ -112,16 +115,18 @@ class Before:
         rods: shapes of the rods by name.
         bodies: poses of the bodies by name.
         friction: contacts with friction, and their dimensionless forces, shape (3,).
+        largest: largest dimensionless force of a contact.
     """
 
     rods: Mapping[str, LastShape]
     bodies: Mapping[str, SolvedPoses]
     friction: tuple[tuple[Touch, FloatArray], ...]
+    largest: float
 
     def numbers(self, touch: Touch, body: str | None) -> FloatArray:
         """Numbers of a contact at the last point, but for k, shape (HISTORY − 1,)."""
         pose = self.rods[touch.owner].at(float(touch.start), None if body is None else self.bodies[body])
-        return np.concatenate([[float(touch.start)], pose, self.force(touch)])
+        return np.concatenate([[float(touch.start)], pose, self.force(touch), [GIVES / max(LEAST, self.largest)]])
 
     def force(self, touch: Touch) -> FloatArray:
         """Force of friction of a contact, shape (3,); zero for a new one."""
@@ -196,8 +201,8 @@ class RubbingWritten(Written):
         turned = ca.reshape(before[7:16] + beyond * before[16:25], 3, 3)
         moved = position - start + (rotation @ turned.T - ca.DM.eye(3)) @ arm
         slide = along_surface(moved, normal) / rod.discrete.properties.length
-        gives = GIVES * along_surface(friction - before[25:28], normal)
-        held = along_surface(friction, normal) - before[28] * (slide + gives)
+        gives = before[28] * along_surface(friction - before[25:28], normal)
+        held = along_surface(friction, normal) - before[29] * (slide + gives)
         size = ca.sqrt(ca.sumsqr(held) + ROUNDING**2)
         limit = obstacle.coefficients[0] * ca.fmax(push, 0)
         return friction - ca.fmin(1, limit / size) * held, size - limit

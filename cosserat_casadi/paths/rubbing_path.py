@@ -2,11 +2,10 @@
 
 Each increment solves the equations of rubbing_equations.py at the next factor. An arrangement of contacts ends where a
 margin vanishes, as without friction, and the next one is entered there. An increment ends where a contact breaks loose;
-where one sticks again increments are shortened. What friction leaves open is told: several sticking sections of a rod
-that does not stretch share a force that only their sum determines, and where Coulomb's law with a large coefficient
-has several solutions, of which the path takes one. There the derivatives of the equations, for a slipping contact that
-would slip on or stick, have determinants of different signs (S. Scholtes, Introduction to Piecewise Differentiable
-Equations, Springer 2012, section 2.3).
+where one sticks again increments are shortened. What friction leaves open is told: forces without an effect, as along a
+straight rod that does not stretch, and contacts that might slip on as well as stick. Beside these the determinants of
+the derivatives for slipping and for sticking have different signs (S. Scholtes, Introduction to Piecewise
+Differentiable Equations, Springer 2012, section 2.3).
 """
 
 from __future__ import annotations
@@ -35,6 +34,7 @@ from cosserat_casadi.paths.friction_path import SHORTEST, WITHIN
 from cosserat_casadi.paths.margins import Watch
 from cosserat_casadi.paths.rubbing_equations import (
     AXES,
+    LEAST,
     STIFFNESSES,
     Before,
     LastShape,
@@ -48,9 +48,6 @@ CORRECTIONS = 20
 
 HOLDS = 1e-8
 """Force relative to what friction can hold that counts as rounding."""
-
-LEAST = 1e-3
-"""Force, in EI/ℓ², to which smaller ones are compared."""
 
 LATE = 1e-6
 """Depth, relative to the length, with which a rod may begin to touch."""
@@ -67,6 +64,9 @@ AWAY = 1e-3
 UNDETERMINED = 1e-8
 """Singular value, relative to the largest, below which forces of friction have no effect together."""
 
+MOSTLY = 0.5
+"""Square of the part along the rods of a unit change of friction without effect, above which it is told."""
+
 LIES = (
     " {owner!r} lies down on {obstacle!r}: friction along a line of contact is not followed. Give the obstacle a "
     "width, m, or leave its friction out."
@@ -76,8 +76,9 @@ WEDGES = (
     " Friction may wedge {owner!r} where it comes to {obstacle!r}: the force then jumps, and no equilibrium follows."
 )
 
-SHARED = (
-    " From factor {factor:.6g} on several sections stick that share a force along the rod: only its sum is determined."
+OPEN = (
+    " From factor {factor:.6g} on friction along a rod has no effect, since the rod is straight and does not stretch: "
+    "it is not determined, and stays as it was."
 )
 
 NOT_UNIQUE = (
@@ -136,13 +137,16 @@ class RubbingArrangement(Arrangement):
         touches = self.state(z).touches
         rubbing = [touches[number] for number in self.equations.rubbing]
         friction = tuple(zip(rubbing, self.equations.friction(z), strict=True))
-        return Before(rods, self.bodies(z, load_factor), friction)
+        return Before(rods, self.bodies(z, load_factor), friction, self._largest(z))
+
+    def _largest(self, z: FloatArray) -> float:
+        """Largest dimensionless force of a contact."""
+        return float(np.abs(self.equations.parts(z)[1]).max(initial=0.0))
 
     def excess(self, point: ArcPoint) -> FloatArray:
         """Force that would hold each contact less what friction can, relative to the largest force, shape (k,)."""
         z = self.z(point)
-        _, forces, _ = self.equations.parts(z)
-        return self.at(point.load_factor).excess(z) / max(LEAST, float(np.abs(forces).max(initial=0.0)))
+        return self.at(point.load_factor).excess(z) / max(LEAST, self._largest(z))
 
     def excess_of(self, number: int, point: ArcPoint) -> float:
         """The :meth:`excess` of one contact."""
@@ -190,25 +194,23 @@ class RubbingArrangement(Arrangement):
         first = self.equations.nominal.model.size + self.equations.pushes + AXES * number
         return slice(first, first + AXES * count)
 
-    def shares(self, point: ArcPoint) -> bool:
-        """Whether forces of friction are determined in part only."""
+    def is_open(self, point: ArcPoint) -> bool:
+        """Whether friction along the rods at a point has a part without effect, which so is not determined."""
         here = self.at(point.load_factor)
-        count = len(self.equations.rubbing)
-        forces = np.abs(self.equations.parts(self.z(point))[1])
-        if np.abs(self.equations.friction(self.z(point))).max() <= BESIDE * forces.max():
-            return False
         scale, rows = self._scales
-        matrix = rows[:, None] * here.jacobian(self.z(point), here.given) * scale
-        own = self._friction_entries(0, count)
-        _, values, vectors = np.linalg.svd(matrix)
-        free = vectors[values < UNDETERMINED * values[0], own]
-        together = int(np.sum(np.linalg.svd(free, compute_uv=False) > 0.5)) if len(free) else 0
-        # A force across a rod that stays in a plane has no effect at all.
-        alone = 0
-        for number in range(count):
-            columns = matrix[:, self._friction_entries(number)]
-            alone += int(np.sum(np.linalg.svd(columns, compute_uv=False) < UNDETERMINED * values[0]))
-        return together > alone
+        z = self.z(point)
+        _, values, vectors = np.linalg.svd(rows[:, None] * here.jacobian(z, here.given) * scale)
+        touches = self.state(z).touches
+        along = np.zeros(len(vectors))
+        # Across a rod that stays in a plane friction has no effect either.
+        for number, own in enumerate(here.rubbing):
+            touch = touches[own]
+            tangent = self.poses(z, point.load_factor, float(touch.start), touch.owner).rotation[:, 2]
+            body = obstacle_of(self.scene, touch.obstacle).body
+            if body is not None:
+                tangent = tangent @ self.bodies(z, point.load_factor)[body].rotation
+            along += (vectors[:, self._friction_entries(number)] @ tangent) ** 2
+        return bool(np.any(along[values < UNDETERMINED * values[0]] > MOSTLY))
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
@@ -450,8 +452,8 @@ class RubbingTravel(Travel):
         if number is not None:
             touch = arrangement.equations.state.touches[arrangement.equations.rubbing[number]]
             self.tell(NOT_UNIQUE, touch, point.load_factor)
-        if self.sliding.count(False) > 1 and arrangement.shares(point):
-            self.tell(SHARED, factor=point.load_factor)
+        if False in self.sliding and arrangement.is_open(point):
+            self.tell(OPEN, factor=point.load_factor)
 
 
 def follow_rubbing_path(
