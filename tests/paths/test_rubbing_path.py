@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
-from cosserat_casadi import build, follow, parse_scene, read_scene, scene_from_dict, simulate
+from cosserat_casadi import build, follow, parse_scene, read_scene, scene_from_dict, simulate, solve
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -224,6 +224,30 @@ def test_an_obstacle_on_a_body_hands_friction_on() -> None:
     assert_allclose(np.linalg.norm(contact.force), np.hypot(1.0, 0.3) * own.ends[0], rtol=1e-9, atol=0)
     assert_allclose(end.base_wrench("upper").force, contact.force, rtol=0, atol=1e-9)
     assert_allclose(end.base_wrench("lower").force, -contact.force, rtol=0, atol=1e-9)
+
+
+@pytest.mark.slow
+def test_slides_are_seen_from_the_body_of_an_obstacle() -> None:
+    """A floor on a turned body that a stiff rod holds is the floor in the world."""
+    radius = 0.02
+    scene = tables(radius)
+    post = {"name": "post", "length": 0.1, "strain": "planar", "stiffness": {"bending_y": 1e9}}
+    scene["rods"].append(post | {"base": {"position": [0.5, 0, -0.5], "tangent": [1, 0, 0]}})
+    scene["bodies"] = [{"name": "plate", "mass": 0.0, "inertia": [0, 0, 0]}]
+    scene["joints"] = [{"name": "held", "kind": "fixed", "body": "plate", "rod": "post"}]
+    rotation = solve(build(scene_from_dict(scene | {"obstacles": []}))).body("plate").rotation
+    assert abs(np.trace(rotation) - 3.0) > 1.0
+    (floor,) = scene["obstacles"]
+    turned = {"point": (rotation.T @ [-0.6, 0, 0.45]).tolist(), "normal": rotation[2].tolist()}
+    scene["obstacles"] = [floor | turned | {"body": "plate", "rods": ["rod"]}]
+    model = build(scene_from_dict(scene))
+    pressed = followed(model, "push.force", [0, 0, -1.0])
+    path = followed(model, "rod.base.position", [-0.05, 0, 0], pressed)
+    still = dragged(radius)
+    assert kinds(path) == kinds(still)
+    assert_allclose(path.events[0].factor, still.events[0].factor, rtol=1e-5, atol=0)
+    assert_allclose(path.contacts(-1)[0].friction, still.contacts(-1)[0].friction, rtol=0, atol=1e-7)
+    assert_allclose(path.tip("rod").position[-1], still.tip().position[-1], rtol=0, atol=1e-7)
 
 
 def test_what_is_not_followed_is_said() -> None:
