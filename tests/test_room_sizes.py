@@ -32,7 +32,7 @@ LINES = {
     "numerics": 5_385,
     "obstacles": 415,
     "page": 810,
-    "paths": 3_730,
+    "paths": 3_735,
     "plots": 3_920,
     "results": 2_075,
     "rod": 6_128,

@@ -61,8 +61,8 @@ BESIDE = 2e-5
 AWAY = 1e-3
 """Relative change of a force of friction with which such a contact slips, or sticks, beyond doubt."""
 
-UNDETERMINED = 1e-8
-"""Singular value, relative to the largest, below which forces of friction have no effect together."""
+UNDETERMINED = 1e-5
+"""Singular value, relative to the largest, below which forces of friction have no effect."""
 
 MOSTLY = 0.5
 """Square of the part along the rods of a unit change of friction without effect, above which it is told."""
@@ -196,7 +196,10 @@ class RubbingArrangement(Arrangement):
 
     def is_open(self, point: ArcPoint) -> bool:
         """Whether friction along the rods at a point has a part without effect, which so is not determined."""
-        here = self.at(point.load_factor)
+        assert self.equations.before is not None
+        # On a surface that does not give at all.
+        hard = self.changed(before=replace(self.equations.before, largest=inf))
+        here = hard.at(point.load_factor)
         scale, rows = self._scales
         z = self.z(point)
         _, values, vectors = np.linalg.svd(rows[:, None] * here.jacobian(z, here.given) * scale)
