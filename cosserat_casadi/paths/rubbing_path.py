@@ -61,8 +61,8 @@ BESIDE = 2e-5
 AWAY = 1e-3
 """Relative change of a force of friction with which such a contact slips, or sticks, beyond doubt."""
 
-UNDETERMINED = 1e-5
-"""Singular value, relative to the largest, below which forces of friction have no effect."""
+UNDETERMINED = 1e-6
+"""Singular value of the scaled equations below which forces of friction have no effect."""
 
 MOSTLY = 0.5
 """Square of the part along the rods of a unit change of friction without effect, above which it is told."""
@@ -213,7 +213,7 @@ class RubbingArrangement(Arrangement):
             if body is not None:
                 tangent = tangent @ self.bodies(z, point.load_factor)[body].rotation
             along += (vectors[:, self._friction_entries(number)] @ tangent) ** 2
-        return bool(np.any(along[values < UNDETERMINED * values[0]] > MOSTLY))
+        return bool(np.any(along[values < UNDETERMINED] > MOSTLY))
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
