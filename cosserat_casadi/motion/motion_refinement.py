@@ -549,7 +549,8 @@ def _with_tolerance(search: _Search, first: Model) -> Motion:
                 break
             return not_started(model, simulator.start, asked_of(search.scene, search.simulation))
         without_start = 0
-        history, step_tolerance = _on_level(search, simulator, modes)
+        computed = _on_level(search, simulator, modes)
+        history, step_tolerance = computed.history, computed.tolerance
         if history.outcome is StepOutcome.INTERRUPTED and search.levels:
             raise KeyboardInterrupt
         if not history.completed:
@@ -561,6 +562,8 @@ def _with_tolerance(search: _Search, first: Model) -> Motion:
             simulator, history, found, rung, modes, distance, unseen, step_tolerance=step_tolerance, turn=turn
         )
         search.levels.append(_with_waves(search, level))
+        if computed.cut_short:
+            raise KeyboardInterrupt
         if step_tolerance < search.step_tolerance and search.space_error > SPACE_SHARE * search.tolerance:
             search.levels[-1] = _with_steps_of_others(search)
             distance = search.last.distance
@@ -581,8 +584,6 @@ def _with_tolerance(search: _Search, first: Model) -> Motion:
             return _given_up(search, CHATTERS.format(**search.told, foreseen=search.foreseen_impacts))
         rung = search.climb()
     timed = timed or _timed(search)
-    if timed.is_interrupted:
-        raise KeyboardInterrupt
     if not timed.history.completed:
         return ended_early(search.last.simulator, timed.history)
     finest = replace(search.last, history=timed.history)
@@ -664,6 +665,8 @@ def _is_erratic(search: _Search) -> bool:
     ):
         tolerance *= TIGHTER
         coarse = level.simulator.controlled(tolerance)
+        if coarse.outcome is StepOutcome.INTERRUPTED:
+            raise KeyboardInterrupt
         if not coarse.completed:
             return False
         coarse_paths = level.simulator.paths(coarse)
@@ -700,8 +703,8 @@ def _given_up(search: _Search, why: str) -> Motion:
     return replace(motion, message=f"{motion.message} {why}")
 
 
-def _on_level(search: _Search, simulator: Simulator, modes: int) -> tuple[History, float]:
-    """Compute the motion on a level of so many modes; also return the tolerance of its steps, nan for given steps.
+def _on_level(search: _Search, simulator: Simulator, modes: int) -> TimedHistory:
+    """Compute the motion on a level of so many modes; the error of its steps is known for the first given ones alone.
 
     The first level determines the size of given steps, or the tolerance of the steps.
     """
@@ -709,7 +712,7 @@ def _on_level(search: _Search, simulator: Simulator, modes: int) -> tuple[Histor
     if not search.levels and given:
         timed = simulator.to_tolerance(TIME_SHARE * search.tolerance, first=search.tolerance)
         search.time_error = timed.error
-        return timed.history, float("nan")
+        return timed
     if not search.levels:
         search.step_tolerance = _first_step_tolerance(search)
     elif len(search.levels) == TOLD_AFTER and not given:
@@ -722,9 +725,9 @@ def _on_level(search: _Search, simulator: Simulator, modes: int) -> tuple[Histor
             search.step_tolerance /= factor_for(told.error, wanted)
     if np.isfinite(search.step_tolerance):
         tolerance = search.step_tolerance / (TIGHTER if _seems_last(search, modes) else 1.0)
-        return simulator.controlled(tolerance), tolerance
+        return TimedHistory(simulator.controlled(tolerance), float("nan"), tolerance)
     # Pieces are divided evenly: the longest step is the one that was asked for, or next to it.
-    return simulator.stepped(search.last.history.statistics.largest_step), float("nan")
+    return TimedHistory(simulator.stepped(search.last.history.statistics.largest_step), float("nan"))
 
 
 def _seems_last(search: _Search, modes: int) -> bool:
@@ -754,7 +757,18 @@ def _first_step_tolerance(search: _Search) -> float:
 
 
 def _timed(search: _Search) -> TimedHistory:
-    """Compute the motion of the last level with steps as exact as the tolerance demands, and their error."""
+    """Compute the motion of the last level with steps as exact as the tolerance demands, and their error.
+
+    Raises:
+        KeyboardInterrupt: a motion was interrupted.
+    """
+    timed = _timed_or_interrupted(search)
+    if timed.is_interrupted:
+        raise KeyboardInterrupt
+    return timed
+
+
+def _timed_or_interrupted(search: _Search) -> TimedHistory:
     level = search.last
     if search.scene.rubs_exactly and search.simulation.step is None:
         return level.simulator.halved(_allowed(search, level.history), level.history)
