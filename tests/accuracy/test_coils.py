@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from cosserat_casadi import (
     Outcome,
@@ -19,7 +20,10 @@ from cosserat_casadi import (
     simulate,
     solve,
 )
-from cosserat_casadi.equilibrium.metrics import pose_distance
+from cosserat_casadi.accuracy.levels import nodes_for_turn, verified_nodes
+from cosserat_casadi.equilibrium.blindness import TurnedElements
+from cosserat_casadi.equilibrium.metrics import largest_turn, pose_distance
+from cosserat_casadi.model.discrete_scene import Richer
 from tests.scenes import push, scene
 
 PITCH = 0.126
@@ -59,6 +63,22 @@ def true_error(solution: Solution) -> float:
     reference = solve(fine, solution.inputs, estimate_error=False)
     assert reference.converged
     return pose_distance(solution, reference)
+
+
+def test_turns_of_a_rolled_rod_are_those_unloaded_and_those_by_its_moment() -> None:
+    """A moment adds two turns to the turn of a bent rod; one element has a quarter of its length."""
+    bent = {"name": "rod", "length": 1.0, "strain": "planar", "stiffness": {"bending_y": 1.0}}
+    bent["intrinsic"] = {"curvature": [0.0, 2 * np.pi, 0.0]}
+    roll = {"name": "roll", "kind": "tip_wrench", "rod": "rod", "moment": [0.0, 4 * np.pi, 0.0]}
+    idle = push(force=[0.0, 0.0, 0.0]) | {"kind": "point_wrench", "at": 0.25}
+    rolled = scene(roll, idle, rods=[bent], accuracy={"modes": 3, "nodes": 20})
+    solution = solve(build(rolled))
+    discrete = solution.model.discrete
+    turns = TurnedElements(Richer(discrete, discrete)).turns_at(np.stack([0 * solution.x, solution.x]))
+    assert_allclose(turns / (2 * np.pi), [[0.25, 0.75], [0.75, 2.25]], rtol=1e-6, atol=0)
+    assert_allclose(largest_turn(solution), turns.max(), rtol=1e-6, atol=0)
+    assert verified_nodes(rolled, 3, 0.0) - verified_nodes(scene(rods=[bent | {"intrinsic": {}}]), 3, 0.0) == 3
+    assert verified_nodes(rolled, 3, turns.max()) > nodes_for_turn(3, turns.max())
 
 
 def test_a_path_of_a_coil_knows_its_error() -> None:
