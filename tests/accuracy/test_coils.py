@@ -97,6 +97,8 @@ def test_levels_see_turns_by_loads() -> None:
         return modes
 
     assert modes_after(solve(model), 9) == 28
+    # Five turns of a coil ask for 18.
+    assert min(LevelsOfRods(drawn(5, [0.0, 0.0, 0.0], 1e-3)).first().discretisation["rod"].modes) >= 18
     still = solve(model, {"roll.moment": [0, 0, 0], "push.force": [0, 0, 0]})
     assert [modes_after(still, count) for count in (6, 12)] == [6 + FINER_MODES, 12]
     none = cast(Any, None)

@@ -62,6 +62,20 @@ def test_gaps_are_the_least_over_both_rods() -> None:
         assert_allclose(found, expected, rtol=0, atol=1e-4)
 
 
+def test_parallel_rods_have_a_gap_with_finite_derivatives() -> None:
+    """Every section of one is as near to the other, and the gap has no bend along them."""
+    tables = free_rods()
+    tables["rods"][1]["base"] = {"free": True, "position": [-0.2, 0, 0], "tangent": [1, 0, 0]}
+    model = moving(tables)
+    pairs, inputs = pairs_of(model, 2), model.pack()
+    radii = sum(rod["section"]["radius"] for rod in tables["rods"])
+    still = np.zeros(model.size)
+    assert_allclose(pairs.gaps(still, inputs).full(), (0.02 - radii) / LENGTHS["upper"], rtol=1e-12, atol=0)
+    at = [np.append(still, np.full(pairs.count, value)) for value in (1.0, 0.0, 0.0)]
+    matrices = pairs.dynamics_jacobian(*at, inputs, [1e-2], 0 * inputs, 0 * inputs)
+    assert all(np.isfinite(matrix.full()).all() for matrix in matrices)
+
+
 @pytest.mark.parametrize("share", [0.0, 0.4])
 def test_forces_on_both_rods_are_opposite_and_derivatives_are_those_of_differences(share: float) -> None:
     """Of contact and friction; what is at the beginning of a stage, with restitution, turns otherwise than its end."""
