@@ -73,7 +73,8 @@ def test_parallel_rods_have_a_gap_with_finite_derivatives() -> None:
     assert_allclose(pairs.gaps(still, inputs).full(), (0.02 - radii) / LENGTHS["upper"], rtol=1e-12, atol=0)
     at = [np.append(still, np.full(pairs.count, value)) for value in (1.0, 0.0, 0.0)]
     matrices = pairs.dynamics_jacobian(*at, inputs, [1e-2], 0 * inputs, 0 * inputs)
-    assert all(np.isfinite(matrix.full()).all() for matrix in matrices)
+    # Without a bend that straight rods have, places would move by 1e18.
+    assert max(np.abs(matrix.full()).max() for matrix in matrices) < 1e10
 
 
 @pytest.mark.parametrize("share", [0.0, 0.4])
