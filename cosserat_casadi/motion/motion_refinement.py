@@ -480,8 +480,7 @@ def _with_fixed(search: _Search, model: Model) -> Motion:
         return ended_early(simulator, timed.history)
     level = _with_waves(search, ResolvedMotion(simulator, timed.history, simulator.paths(timed.history)))
     search.levels.append(level)
-    if timed.is_interrupted:
-        raise KeyboardInterrupt
+    _unless_interrupted(timed)
 
     turn = _largest_turn(timed.history, search.simulation.duration)
     finer = {name: _finer(scene, name, own, turn) for name, own in model.discretisation.items()}
@@ -551,8 +550,8 @@ def _with_tolerance(search: _Search, first: Model) -> Motion:
         without_start = 0
         computed = _on_level(search, simulator, modes)
         history, step_tolerance = computed.history, computed.tolerance
-        if history.outcome is StepOutcome.INTERRUPTED and search.levels:
-            raise KeyboardInterrupt
+        if search.levels:
+            _unless_interrupted(computed)
         if not history.completed:
             return ended_early(simulator, history)
         found = simulator.paths(history)
@@ -562,8 +561,7 @@ def _with_tolerance(search: _Search, first: Model) -> Motion:
             simulator, history, found, rung, modes, distance, unseen, step_tolerance=step_tolerance, turn=turn
         )
         search.levels.append(_with_waves(search, level))
-        if computed.cut_short:
-            raise KeyboardInterrupt
+        _unless_interrupted(computed)
         if step_tolerance < search.step_tolerance and search.space_error > SPACE_SHARE * search.tolerance:
             search.levels[-1] = _with_steps_of_others(search)
             distance = search.last.distance
@@ -575,7 +573,7 @@ def _with_tolerance(search: _Search, first: Model) -> Motion:
             return _erratic(search)
         LOG.info("up to %d modes: %d steps, %.1e from the level before", modes, history.statistics.steps, distance)
         if search.space_error <= SPACE_SHARE * search.tolerance:
-            timed = _timed(search)
+            timed = _unless_interrupted(_timed(search))
             if not _asks_for_modes(search, timed):
                 break
             _make_last(search, timed)
@@ -583,7 +581,7 @@ def _with_tolerance(search: _Search, first: Model) -> Motion:
         if search.foreseen_impacts > MOST_IMPACTS:
             return _given_up(search, CHATTERS.format(**search.told, foreseen=search.foreseen_impacts))
         rung = search.climb()
-    timed = timed or _timed(search)
+    timed = timed or _unless_interrupted(_timed(search))
     if not timed.history.completed:
         return ended_early(search.last.simulator, timed.history)
     finest = replace(search.last, history=timed.history)
@@ -664,9 +662,7 @@ def _is_erratic(search: _Search) -> bool:
         level.history, min(distances, default=np.inf), 0.0, search.tolerance
     ):
         tolerance *= TIGHTER
-        coarse = level.simulator.controlled(tolerance)
-        if coarse.outcome is StepOutcome.INTERRUPTED:
-            raise KeyboardInterrupt
+        coarse = _unless_interrupted(TimedHistory(level.simulator.controlled(tolerance), float("nan"))).history
         if not coarse.completed:
             return False
         coarse_paths = level.simulator.paths(coarse)
@@ -691,9 +687,7 @@ def _given_up(search: _Search, why: str) -> Motion:
     """
     level = search.last
     if level.waves and np.isfinite(search.step_tolerance) and not is_struck(level.history):
-        timed = level.simulator.tightened(level.history, level.step_tolerance, lambda _: np.inf)
-        if timed.is_interrupted:
-            raise KeyboardInterrupt
+        timed = _unless_interrupted(level.simulator.tightened(level.history, level.step_tolerance, lambda _: np.inf))
         if timed.history.completed:
             _tell_fronts(search, timed.history)
             exact = replace(search.last, history=timed.history)
@@ -716,9 +710,8 @@ def _on_level(search: _Search, simulator: Simulator, modes: int) -> TimedHistory
     if not search.levels:
         search.step_tolerance = _first_step_tolerance(search)
     elif len(search.levels) == TOLD_AFTER and not given:
-        told = search.last.simulator.tightened(search.last.history, search.last.step_tolerance, lambda _: np.inf)
-        if told.is_interrupted:
-            raise KeyboardInterrupt
+        level = search.last
+        told = _unless_interrupted(level.simulator.tightened(level.history, level.step_tolerance, lambda _: np.inf))
         search.time_error = told.error
         wanted = TIME_SHARE * search.tolerance
         if told.error > wanted:
@@ -756,19 +749,15 @@ def _first_step_tolerance(search: _Search) -> float:
     return first
 
 
-def _timed(search: _Search) -> TimedHistory:
-    """Compute the motion of the last level with steps as exact as the tolerance demands, and their error.
-
-    Raises:
-        KeyboardInterrupt: a motion was interrupted.
-    """
-    timed = _timed_or_interrupted(search)
+def _unless_interrupted(timed: TimedHistory) -> TimedHistory:
+    """Return a motion; raise KeyboardInterrupt if it, or a more exact one, was interrupted."""
     if timed.is_interrupted:
         raise KeyboardInterrupt
     return timed
 
 
-def _timed_or_interrupted(search: _Search) -> TimedHistory:
+def _timed(search: _Search) -> TimedHistory:
+    """Compute the motion of the last level with steps as exact as the tolerance demands, and their error."""
     level = search.last
     if search.scene.rubs_exactly and search.simulation.step is None:
         return level.simulator.halved(_allowed(search, level.history), level.history)
@@ -810,7 +799,7 @@ def _timed_on_last(search: _Search, unseen: float) -> TimedHistory | None:
     """
     level = search.last
     search.levels[-1] = replace(level, distance=0.0, unseen=unseen)
-    timed = _timed(search)
+    timed = _unless_interrupted(_timed(search))
     if not np.isfinite(search.step_tolerance) or not timed.history.completed:
         return timed
     left = lacking(timed.history, search.simulation.duration)
