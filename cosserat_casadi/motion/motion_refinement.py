@@ -480,8 +480,7 @@ def _with_fixed(search: _Search, model: Model) -> Motion:
         return ended_early(simulator, timed.history)
     level = _with_waves(search, ResolvedMotion(simulator, timed.history, simulator.paths(timed.history)))
     search.levels.append(level)
-    if timed.is_interrupted:
-        raise KeyboardInterrupt
+    _unless_interrupted(timed)
 
     turn = _largest_turn(timed.history, search.simulation.duration)
     finer = {name: _finer(scene, name, own, turn) for name, own in model.discretisation.items()}
@@ -549,9 +548,10 @@ def _with_tolerance(search: _Search, first: Model) -> Motion:
                 break
             return not_started(model, simulator.start, asked_of(search.scene, search.simulation))
         without_start = 0
-        history, step_tolerance = _on_level(search, simulator, modes)
-        if history.outcome is StepOutcome.INTERRUPTED and search.levels:
-            raise KeyboardInterrupt
+        computed = _on_level(search, simulator, modes)
+        history, step_tolerance = computed.history, computed.tolerance
+        if search.levels:
+            _unless_interrupted(computed)
         if not history.completed:
             return ended_early(simulator, history)
         found = simulator.paths(history)
@@ -561,6 +561,7 @@ def _with_tolerance(search: _Search, first: Model) -> Motion:
             simulator, history, found, rung, modes, distance, unseen, step_tolerance=step_tolerance, turn=turn
         )
         search.levels.append(_with_waves(search, level))
+        _unless_interrupted(computed)
         if step_tolerance < search.step_tolerance and search.space_error > SPACE_SHARE * search.tolerance:
             search.levels[-1] = _with_steps_of_others(search)
             distance = search.last.distance
@@ -572,7 +573,7 @@ def _with_tolerance(search: _Search, first: Model) -> Motion:
             return _erratic(search)
         LOG.info("up to %d modes: %d steps, %.1e from the level before", modes, history.statistics.steps, distance)
         if search.space_error <= SPACE_SHARE * search.tolerance:
-            timed = _timed(search)
+            timed = _unless_interrupted(_timed(search))
             if not _asks_for_modes(search, timed):
                 break
             _make_last(search, timed)
@@ -580,9 +581,7 @@ def _with_tolerance(search: _Search, first: Model) -> Motion:
         if search.foreseen_impacts > MOST_IMPACTS:
             return _given_up(search, CHATTERS.format(**search.told, foreseen=search.foreseen_impacts))
         rung = search.climb()
-    timed = timed or _timed(search)
-    if timed.is_interrupted:
-        raise KeyboardInterrupt
+    timed = timed or _unless_interrupted(_timed(search))
     if not timed.history.completed:
         return ended_early(search.last.simulator, timed.history)
     finest = replace(search.last, history=timed.history)
@@ -663,7 +662,7 @@ def _is_erratic(search: _Search) -> bool:
         level.history, min(distances, default=np.inf), 0.0, search.tolerance
     ):
         tolerance *= TIGHTER
-        coarse = level.simulator.controlled(tolerance)
+        coarse = _unless_interrupted(TimedHistory(level.simulator.controlled(tolerance), float("nan"))).history
         if not coarse.completed:
             return False
         coarse_paths = level.simulator.paths(coarse)
@@ -688,9 +687,7 @@ def _given_up(search: _Search, why: str) -> Motion:
     """
     level = search.last
     if level.waves and np.isfinite(search.step_tolerance) and not is_struck(level.history):
-        timed = level.simulator.tightened(level.history, level.step_tolerance, lambda _: np.inf)
-        if timed.is_interrupted:
-            raise KeyboardInterrupt
+        timed = _unless_interrupted(level.simulator.tightened(level.history, level.step_tolerance, lambda _: np.inf))
         if timed.history.completed:
             _tell_fronts(search, timed.history)
             exact = replace(search.last, history=timed.history)
@@ -700,8 +697,8 @@ def _given_up(search: _Search, why: str) -> Motion:
     return replace(motion, message=f"{motion.message} {why}")
 
 
-def _on_level(search: _Search, simulator: Simulator, modes: int) -> tuple[History, float]:
-    """Compute the motion on a level of so many modes; also return the tolerance of its steps, nan for given steps.
+def _on_level(search: _Search, simulator: Simulator, modes: int) -> TimedHistory:
+    """Compute the motion on a level of so many modes; the error of its steps is known for the first given ones alone.
 
     The first level determines the size of given steps, or the tolerance of the steps.
     """
@@ -709,22 +706,21 @@ def _on_level(search: _Search, simulator: Simulator, modes: int) -> tuple[Histor
     if not search.levels and given:
         timed = simulator.to_tolerance(TIME_SHARE * search.tolerance, first=search.tolerance)
         search.time_error = timed.error
-        return timed.history, float("nan")
+        return timed
     if not search.levels:
         search.step_tolerance = _first_step_tolerance(search)
     elif len(search.levels) == TOLD_AFTER and not given:
-        told = search.last.simulator.tightened(search.last.history, search.last.step_tolerance, lambda _: np.inf)
-        if told.is_interrupted:
-            raise KeyboardInterrupt
+        level = search.last
+        told = _unless_interrupted(level.simulator.tightened(level.history, level.step_tolerance, lambda _: np.inf))
         search.time_error = told.error
         wanted = TIME_SHARE * search.tolerance
         if told.error > wanted:
             search.step_tolerance /= factor_for(told.error, wanted)
     if np.isfinite(search.step_tolerance):
         tolerance = search.step_tolerance / (TIGHTER if _seems_last(search, modes) else 1.0)
-        return simulator.controlled(tolerance), tolerance
+        return TimedHistory(simulator.controlled(tolerance), float("nan"), tolerance)
     # Pieces are divided evenly: the longest step is the one that was asked for, or next to it.
-    return simulator.stepped(search.last.history.statistics.largest_step), float("nan")
+    return TimedHistory(simulator.stepped(search.last.history.statistics.largest_step), float("nan"))
 
 
 def _seems_last(search: _Search, modes: int) -> bool:
@@ -751,6 +747,13 @@ def _first_step_tolerance(search: _Search) -> float:
         # Steps that happen to end where a rod meets an obstacle err less than their like.
         return min(first, search.tolerance / TIGHTER)
     return first
+
+
+def _unless_interrupted(timed: TimedHistory) -> TimedHistory:
+    """Return a motion; raise KeyboardInterrupt if it, or a more exact one, was interrupted."""
+    if timed.is_interrupted:
+        raise KeyboardInterrupt
+    return timed
 
 
 def _timed(search: _Search) -> TimedHistory:
@@ -796,7 +799,7 @@ def _timed_on_last(search: _Search, unseen: float) -> TimedHistory | None:
     """
     level = search.last
     search.levels[-1] = replace(level, distance=0.0, unseen=unseen)
-    timed = _timed(search)
+    timed = _unless_interrupted(_timed(search))
     if not np.isfinite(search.step_tolerance) or not timed.history.completed:
         return timed
     left = lacking(timed.history, search.simulation.duration)

@@ -605,9 +605,10 @@ def simulate(
     if not timed.history.completed:
         return ended_early(simulator, timed.history)
     if timed.is_interrupted:
-        return replace(whole_but_interrupted(simulator, timed.history, timed.error), tolerance=None)
-    bound = tolerance if asked.step is None else LARGEST_SHAPE_ERROR
-    motion = judged(simulator, timed.history, timed.error, bound, timed.companions)
+        motion = whole_but_interrupted(simulator, timed.history, timed.error)
+    else:
+        bound = tolerance if asked.step is None else LARGEST_SHAPE_ERROR
+        motion = judged(simulator, timed.history, timed.error, bound, timed.companions)
     # What its modes leave of the paths is not estimated, so that no tolerance of the paths is met.
     return replace(motion, message=f"{motion.message} {STEPS_ALONE}", tolerance=None)
 

@@ -319,9 +319,8 @@ def run_shard(
     file = shard.file(plan.output)
     begun = Store(file).head()
     if begun is not None and begun["sweep"] != plan.identity:
-        raise SceneError(
-            Problem("--shard", (f"{file} belongs to another sweep"), "remove it, or choose another --output")
-        )
+        problem = f"{file} belongs to another sweep"
+        raise SceneError(Problem("--shard", problem, "remove it, or choose another --output"))
     with _machine(scheduler, cores, plan.device) as machine, Store(file) as store:
         choice = _begun(plan, work, store, told, _choice_of_others(plan, shard))
         _Run(plan, work, choice, told).solve_rest(machine, store)

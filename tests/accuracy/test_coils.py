@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from cosserat_casadi import (
     Outcome,
@@ -19,7 +20,13 @@ from cosserat_casadi import (
     simulate,
     solve,
 )
-from cosserat_casadi.equilibrium.metrics import pose_distance
+from cosserat_casadi.accuracy.levels import nodes_for_turn, verified_nodes
+from cosserat_casadi.accuracy.refine import FINER_MODES
+from cosserat_casadi.control.inverse_levels import LevelsOfRods
+from cosserat_casadi.equilibrium.blindness import TurnedElements
+from cosserat_casadi.equilibrium.metrics import largest_turn, pose_distance
+from cosserat_casadi.model.discrete_scene import Richer
+from cosserat_casadi.motion.motion_refinement import ResolvedMotion, _Search
 from tests.scenes import push, scene
 
 PITCH = 0.126
@@ -59,6 +66,48 @@ def true_error(solution: Solution) -> float:
     reference = solve(fine, solution.inputs, estimate_error=False)
     assert reference.converged
     return pose_distance(solution, reference)
+
+
+def test_turns_of_a_rolled_rod_are_those_unloaded_and_those_by_its_moment() -> None:
+    """A moment adds two turns to the turn of a bent rod; one element has a quarter of its length."""
+    bent = {"name": "rod", "length": 1.0, "strain": "planar", "stiffness": {"bending_y": 1.0}}
+    bent["intrinsic"] = {"curvature": [0.0, 2 * np.pi, 0.0]}
+    roll = {"name": "roll", "kind": "tip_wrench", "rod": "rod", "moment": [0.0, 4 * np.pi, 0.0]}
+    idle = push(force=[0.0, 0.0, 0.0]) | {"kind": "point_wrench", "at": 0.25}
+    rolled = scene(roll, idle, rods=[bent], accuracy={"modes": 3, "nodes": 20})
+    solution = solve(build(rolled))
+    discrete = solution.model.discrete
+    turns = TurnedElements(Richer(discrete, discrete)).turns_at(np.stack([0 * solution.x, solution.x]))
+    assert_allclose(turns / (2 * np.pi), [[0.25, 0.75], [0.75, 2.25]], rtol=1e-6, atol=0)
+    assert_allclose(largest_turn(solution), turns.max(), rtol=1e-6, atol=0)
+    assert verified_nodes(rolled, 3, 0.0) - verified_nodes(scene(rods=[bent | {"intrinsic": {}}]), 3, 0.0) == 3
+    assert verified_nodes(rolled, 3, turns.max()) > nodes_for_turn(3, turns.max())
+
+
+def test_levels_see_turns_by_loads() -> None:
+    """Eight turns by a moment ask for 28 modes of inverse problems, and for as many of motions, whose rods say none."""
+    straight = {"name": "rod", "length": 1.0, "strain": "planar", "stiffness": {"bending_y": 1.0}}
+    roll = {"name": "roll", "kind": "tip_wrench", "rod": "rod", "moment": [0.0, 16 * np.pi, 0.0]}
+    rolled = scene(roll, push(force=[3.0, 0.0, 0.0]), rods=[straight], accuracy={"tolerance": 1e-3})
+    model = build(rolled, discretise(rolled, 6, 60, "magnus8"))
+    levels = LevelsOfRods(rolled)
+
+    def modes_after(solution: Solution, count: int) -> int:
+        (modes,) = levels.finer(count, model, [solution]).discretisation["rod"].modes
+        return modes
+
+    assert modes_after(solve(model), 9) == 28
+    # Five turns of a coil ask for 18.
+    assert min(LevelsOfRods(drawn(5, [0.0, 0.0, 0.0], 1e-3)).first().discretisation["rod"].modes) >= 18
+    still = solve(model, {"roll.moment": [0, 0, 0], "push.force": [0, 0, 0]})
+    assert [modes_after(still, count) for count in (6, 12)] == [6 + FINER_MODES, 12]
+    none = cast(Any, None)
+    search = _Search(rolled, none, None, None, none, (), 1e-3, ladder=(6, 9, 21, 28, 36))
+    search.levels.append(ResolvedMotion(none, none, none, rung=1, modes=9, distance=1e-9, turn=16 * np.pi))
+    assert search.space_error == np.inf
+    assert search.climb() == 3
+    search.levels[-1] = ResolvedMotion(none, none, none, rung=1, modes=9, distance=1e-9, turn=100 * np.pi)
+    assert search.climb() is None
 
 
 def test_a_path_of_a_coil_knows_its_error() -> None:

@@ -92,11 +92,11 @@ def test_tolerance_is_met_by_held_rods(seed: int, tolerances: tuple[float, ...])
         assert pose_distance(solution, truth) <= min(tolerance, 1.01 * solution.error_estimate)
 
 
-@pytest.mark.parametrize(("seed", "most"), mostly_slow([(36, 9), (33, 15)], quick=[(36, 9)]))
+@pytest.mark.parametrize(("seed", "most"), mostly_slow([(118, 11), (33, 15), (288, 10)], quick=[(118, 11)]))
 def test_a_round_rod_pushed_along_its_axis_does_not_pay_for_its_reference(seed: int, most: int) -> None:
     """It may bend to any side: with unequal modes of its bendings one side is preferred, and no start is near it.
 
-    References have 15 and 24 modes.
+    Their references have 19, 30 and 15 modes.
     """
     solution = solve(drawn(seed, 1e-4))
     bending_x, bending_y, torsion = solution.model.discretisation["rod"].modes

@@ -270,21 +270,26 @@ def test_interrupted_motion_keeps_its_rows() -> None:
 
 
 @pytest.mark.parametrize("changes", [{}, {"integrator": "gauss"}, {"step": 0.02}])
-@pytest.mark.parametrize("of_scene", [False, True])
-def test_interrupted_in_a_more_exact_motion_keeps_the_whole_one(changes: dict[str, Any], of_scene: bool) -> None:
+@pytest.mark.parametrize("kind", ["model", "scene", "scene without modes"])
+def test_interrupted_in_a_more_exact_motion_keeps_the_whole_one(changes: dict[str, Any], kind: str) -> None:
     """The second motion tells the error of the first: what it had computed is shorter, and is not returned."""
     begun = 0
     latest = 0.0
+    interrupted = False
 
     def tell(progress: MotionProgress) -> None:
-        nonlocal begun, latest
+        nonlocal begun, latest, interrupted
         begun += progress.time <= latest or not begun
         latest = progress.time
-        if begun == 2:
+        if begun == 2 and not interrupted:
+            interrupted = True
             raise KeyboardInterrupt
 
     table = falling(simulation=asked(start="unloaded", **changes))
-    motion = simulate(scene_from_dict(table) if of_scene else moving_model(table), progress=tell)
+    if kind == "scene without modes":
+        table["accuracy"] = {}
+    motion = simulate(moving_model(table) if kind == "model" else scene_from_dict(table), progress=tell)
+    assert interrupted and begun == 2
     assert motion.outcome is MotionOutcome.INTERRUPTED
     assert motion.times[-1] == 0.4
     assert "The motion is whole" in motion.message and "its error is not known" in motion.message

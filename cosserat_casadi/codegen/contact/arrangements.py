@@ -209,5 +209,5 @@ def _z_of(equations: ContactEquations, near: Solution) -> FloatArray:
     settling = Settling(equations.scene, equations.given, equations.grids, NewtonSettings(), LEAST_TOLERANCE)
     z = settling.solved(equations, near)
     if z is None:
-        raise ExportError(Problem("obstacles", "the search found no contacts at the scene's own inputs"))
+        raise ExportError(Problem("obstacles", "the contacts at the scene's own inputs were not found again"))
     return z
