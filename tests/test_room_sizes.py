@@ -28,7 +28,7 @@ LINES = {
     "maths": 2_595,
     "mjcf": 1_050,
     "model": 11_960,
-    "motion": 15_830,
+    "motion": 15_835,
     "numerics": 5_385,
     "obstacles": 415,
     "page": 805,
