@@ -269,7 +269,7 @@ def test_a_report_fits_a_terminal_of_80_columns(lowered: ContactPath) -> None:
     console = Console(record=True, width=80)
     print_path(console, lowered, [])
     text = console.export_text()
-    assert "beyond it" in text and "x, m" in text
+    assert "after it" in text and "x, m" in text
     assert "…" not in text
 
 
