@@ -27,6 +27,16 @@ PLUS_PRODUCT, MINUS_PRODUCT, PRODUCT_MINUS = range(300, 303)
 OF_TWO = {"atan2", "pow", "fmin", "fmax", "fmod", "copysign", "hypot"}
 """Functions of the mathematical library with two arguments."""
 
+FOURS = {ca.OP_ASSIGN: "{a}", ca.OP_SQ: "{a} * {a}"}
+FOURS |= {code: f"{{a}} {sign} {{b}}" for code, sign in BINARY.items()}
+FOURS |= {PLUS_PRODUCT: "{c} + {a} * {b}", MINUS_PRODUCT: "{c} - {a} * {b}", PRODUCT_MINUS: "{a} * {b} - {c}"}
+FOURS |= {code: f"EACH({number!r}) {BINARY[operation]} {{a}}" for code, (operation, number) in REWRITTEN.items()}
+"""Operations on four lanes at once."""
+
+NUMBERS = {code: f"{name}(a[i], b[i])" if name in OF_TWO else f"{name}(a[i])" for code, name in FUNCTIONS.items()}
+NUMBERS |= {code: text.format("a[i]", "b[i]") for code, text in CHOICES.items()}
+"""Operations on one lane after the other."""
+
 KNOWN = {ca.OP_ASSIGN, ca.OP_SQ, ca.OP_CONST, ca.OP_INPUT, ca.OP_OUTPUT, ca.OP_CALL, *REWRITTEN}
 KNOWN |= {*BINARY, *FUNCTIONS, *CHOICES}
 """Instructions that a line can be written for."""
@@ -205,15 +215,7 @@ def _with_products(lines: Lines, results: slice) -> Lines:
 
 def cases_in_c() -> str:
     """Write the cases of the loop in C by operation: operands ``a``, ``b``, ``c`` of a line, and its result ``to``."""
-    fours = {ca.OP_ASSIGN: "LOAD(a)", ca.OP_SQ: "LOAD(a) * LOAD(a)"}
-    fours |= {code: f"LOAD(a) {sign} LOAD(b)" for code, sign in BINARY.items()}
-    fours[PLUS_PRODUCT] = "LOAD(c) + LOAD(a) * LOAD(b)"
-    fours[MINUS_PRODUCT] = "LOAD(c) - LOAD(a) * LOAD(b)"
-    fours[PRODUCT_MINUS] = "LOAD(a) * LOAD(b) - LOAD(c)"
-    for code, (operation, constant) in REWRITTEN.items():
-        fours[code] = f"EACH({constant!r}) {BINARY[operation]} LOAD(a)"
-    numbers = {code: f"{name}(a[i], b[i])" if name in OF_TWO else f"{name}(a[i])" for code, name in FUNCTIONS.items()}
-    numbers |= {code: text.format("a[i]", "b[i]") for code, text in CHOICES.items()}
-    lines = [f"    case {code}: STORE(to, {text}); break;" for code, text in sorted(fours.items())]
-    lines += [f"    case {code}: EVERY(to[i] = {text}); break;" for code, text in sorted(numbers.items())]
+    loaded = {code: text.format(a="LOAD(a)", b="LOAD(b)", c="LOAD(c)") for code, text in FOURS.items()}
+    lines = [f"    case {code}: STORE(to, {text}); break;" for code, text in sorted(loaded.items())]
+    lines += [f"    case {code}: EVERY(to[i] = {text}); break;" for code, text in sorted(NUMBERS.items())]
     return " \\\n".join(lines)

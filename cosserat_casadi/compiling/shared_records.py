@@ -55,7 +55,7 @@ class Held:
         self._kept.append(held)
         setattr(self.record, name, held.address)
 
-    def call_back(self, name: str, kind: Callable[..., Any], function: Callable[..., None]) -> None:
+    def call_back(self, name: str, kind: Callable[..., Any], function: Callable[..., object]) -> None:
         """Make a member of the record a Python function, whose exception :func:`raise_what_was_raised` raises.
 
         Args:

@@ -169,8 +169,10 @@ FRICTION_OF_JOINTS = " Friction of joints acts in motion alone, and is left out.
 FRICTION_OF_BODIES = " Friction of bodies and disks acts in motion alone, and is left out."
 """A sentence on equilibria and paths of scenes in which bodies or disks rub on obstacles."""
 
-FRICTION_IN_MOTION = " Friction of exact contact acts in motion alone, and is left out."
-"""A sentence on equilibria and paths of scenes that rub on obstacles without a width."""
+FRICTION_IN_MOTION = (
+    " Friction of exact contact between rods, and by a table of coefficients, acts in motion alone, and is left out."
+)
+"""A sentence on equilibria and paths of scenes with such friction."""
 
 
 def left_out_friction(scene: Scene) -> str:
@@ -179,11 +181,14 @@ def left_out_friction(scene: Scene) -> str:
 
 
 def left_out_on_paths(scene: Scene) -> str:
-    """Sentences on friction of joints, bodies and disks, which paths leave out; empty without such friction."""
-    if scene.rubs_exactly:
-        return FRICTION_IN_MOTION + left_out_friction(scene)
+    """Sentences on friction that acts in motion alone, which paths leave out; empty without such friction."""
     of_bodies = any(obstacle.rubs and (obstacle.bodies or obstacle.disks) for obstacle in scene.obstacles)
-    return left_out_friction(scene) + (FRICTION_OF_BODIES if of_bodies else "")
+    of_tables = any(
+        obstacle.rubs and obstacle.presses_rods and not obstacle.rubs_on_paths for obstacle in scene.obstacles
+    )
+    of_rods = any(pair.rubs and pair.exact for pair in scene.rod_contacts)
+    exact = FRICTION_IN_MOTION if of_tables or of_rods else ""
+    return exact + left_out_friction(scene) + (FRICTION_OF_BODIES if of_bodies else "")
 
 
 def _friction_note(solution: Equilibrium[Any]) -> str:
@@ -191,8 +196,8 @@ def _friction_note(solution: Equilibrium[Any]) -> str:
     if not solution.converged or not isinstance(solution, Solution):
         return ""
     scene = solution.model.scene
-    if solution.contacts and scene.rubs_exactly:
-        return left_out_on_paths(scene)
+    if solution.contacts and scene.touches_exactly:
+        return (FRICTION_OF_CONTACT if scene.rubs_along_exact_paths else "") + left_out_on_paths(scene)
     if not (solution.contacts and scene.rubs and solution.model.inputs.memory is None):
         return left_out_friction(scene)
     of_bodies = all(touch.of_body for touch in solution.contacts)

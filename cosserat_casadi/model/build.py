@@ -109,6 +109,8 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
     @property
     def rubs_on_paths(self) -> bool:
         """Whether friction acts along a path: between rods and obstacles or rods and rods, not on bodies or disks."""
+        if self.scene.touches_exactly:
+            return self.scene.rubs_along_exact_paths
         return self.scene.rubs and self.with_memory.inputs.memory is not None
 
     def with_flows(self, x: FloatArray) -> FloatArray:

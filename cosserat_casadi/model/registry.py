@@ -9,6 +9,7 @@ from cosserat_casadi.actuators.chamber import ChamberActuator
 from cosserat_casadi.actuators.muscle import MuscleActuator
 from cosserat_casadi.actuators.tendon import TendonActuator
 from cosserat_casadi.loads.body_wrench import BodyWrenchLoad
+from cosserat_casadi.loads.contact_friction import ContactFrictionLoad
 from cosserat_casadi.loads.contact_layer import ContactLayerLoad
 from cosserat_casadi.loads.contact_line import ContactLineLoad
 from cosserat_casadi.loads.contact_point import ContactPointLoad
@@ -42,7 +43,14 @@ for shipped in (
 ):
     register(shipped)
 
-for found in (ContactPointLoad, ContactLineLoad, RodsPointLoad, PenetrationLoad, ContactLayerLoad):
+for found in (
+    ContactPointLoad,
+    ContactLineLoad,
+    ContactFrictionLoad,
+    RodsPointLoad,
+    PenetrationLoad,
+    ContactLayerLoad,
+):
     # The push of obstacles, and of rods: no scene file names it as a load, so that the scene format does not have it.
     EFFECTS[found.kind] = found()
 

@@ -147,6 +147,12 @@ class CompiledSteps:
         arguments[:ORDERS] = [array.ctypes.data for array in state]
         results[0] = rows.ctypes.data
         self._share_code("kernel", call.code, arguments, results)
+        if call.at_stages is not None and call.at_stages.code is not None:
+            code = call.at_stages.code
+            for name, array in zip(names, call.at_stages.arguments, strict=True):
+                self._held.share(f"stage_{name}", array)
+            self._held.share("stage_results", call.at_stages.results[0])
+            self._share_code("at_stages", code, code.arguments, code.results)
         jacobians = self._run.equations.jacobians
         if isinstance(jacobians, KernelJacobians) and jacobians.call.code is not None:
             code = jacobians.call.code

@@ -18,7 +18,9 @@ import casadi as ca
 from cosserat_casadi.compiling.cache import cache_folder, tallied, tally
 from cosserat_casadi.compiling.compiler import compiled_from, compiled_texts, find_compiler, flags_of_machine
 from cosserat_casadi.compiling.description import key_of
+from cosserat_casadi.compiling.printed_kernels import Kernel
 from cosserat_casadi.compiling.scalar_program import ScalarProgram, scalar_program
+from cosserat_casadi.compiling.straight_program import straight_kernels
 from cosserat_casadi.errors import ExportError
 from cosserat_casadi.files import sources_hash
 from cosserat_casadi.maths.calls import with_dense_results
@@ -32,7 +34,7 @@ from cosserat_casadi.motion.displacement import function_of_displacements
 from cosserat_casadi.motion.facings import points_of, touching_points
 from cosserat_casadi.motion.history import derivatives_of_flight, functions_of_flight
 from cosserat_casadi.motion.moving_points import MovingPoints
-from cosserat_casadi.motion.repeated_call import RepeatedCall, external
+from cosserat_casadi.motion.repeated_call import RepeatedCall, external, has_function
 from cosserat_casadi.motion.step_kernels import (
     JACOBIANS,
     MATRICES,
@@ -51,6 +53,15 @@ from cosserat_casadi.numerics.time_steps import Stepper
 
 RESIDUAL = "motion_residual"
 """Name of inverse dynamics in C, and of its files in the cache."""
+
+AT_STAGES = "motion_residual_at_stages"
+"""Name of inverse dynamics at three stages in C."""
+
+MOST_STRAIGHT = 20_000
+"""Most instructions of inverse dynamics that is written without loops: more take compilers seconds."""
+
+MOST_LINES = 1.5
+"""Most lines for an instruction then: calls for intervals of rods make more, and loops are shorter to compile."""
 
 MARGINS = "motion_margins"
 RESOLUTION = "motion_resolution"
@@ -289,14 +300,17 @@ def _in_machine_code(model: Model, name: str, compiler: str, *, write: bool) -> 
     """
     results, _ = WRITTEN[name]
     # Every motion of a model asks for them: the files of the cache are looked at once.
-    loaded: dict[tuple[str, str, Path], Path] = kept_with(model, "_machine_code", dict)
-    place = (name, compiler, cache_folder())
+    loaded: dict[tuple[str, str, str], str] = kept_with(model, "_machine_code", dict)
+    place = (name, compiler, os.fspath(cache_folder()))
     if place not in loaded:
         library = _library(model, name, compiler, write=write)
         if library is None:
             return None
-        loaded[place] = library
-    return RepeatedCall(external(name, os.fspath(loaded[place])), results, loaded[place])
+        loaded[place] = os.fspath(library)
+    call = RepeatedCall(external(name, loaded[place]), results, loaded[place])
+    if name == RESIDUAL and has_function(AT_STAGES, loaded[place]):
+        call.at_stages = RepeatedCall(external(AT_STAGES, loaded[place]), results, loaded[place])
+    return call
 
 
 def _library(model: Model, name: str, compiler: str, *, write: bool) -> Path | None:
@@ -353,7 +367,7 @@ def _points(model: Model) -> list[MovingPoints]:
     return points_of(struck_beside_friction(model)) if model.scene.rubs_exactly else touching_points(model)
 
 
-def _residual(model: Model) -> list[ca.Function]:
+def _residual(model: Model) -> list[Kernel]:
     function = model.inverse_dynamics
     arguments = function.mx_in()
     residual = ca.Function(RESIDUAL, arguments, [ca.densify(function(*arguments))], function.name_in(), ["residual"])
@@ -366,10 +380,20 @@ def _residual(model: Model) -> list[ca.Function]:
         beside += functions_of_sliding(model)
     # With parameters no motion is computed, and rows have no parameters.
     rows = [] if model.parameters.size else [*functions_of_limits(model), *functions_of_closing(model)]
-    return [residual, *beside, *rows]
+    return [*_straight(model, residual), *beside, *rows]
 
 
-def _jacobians(model: Model) -> list[ca.Function]:
+def _straight(model: Model, residual: ca.Function) -> list[Kernel]:
+    """Inverse dynamics without loops, and for the stages of a step at once; with loops where that is too long."""
+    if can_be_centred(model) or _instructions(model) > MOST_STRAIGHT:
+        return [residual]
+    program = _program_of(model, write=True)
+    if program is None or len(program.lines) > MOST_LINES * _instructions(model):
+        return [residual]
+    return straight_kernels(program, residual, AT_STAGES)
+
+
+def _jacobians(model: Model) -> list[Kernel]:
     beside = derivatives_of_flight(model)
     for points in _points(model):
         beside += points.in_derivatives

@@ -88,6 +88,8 @@ class Piece:
 
     def at(self, t: float) -> InputState:
         """Inputs at a time; at start and end their limits from within, beyond these the continuation of the piece."""
+        if not self.moves:
+            return InputState(self._constant.copy(), *np.zeros((2, len(self._constant))))
         # Every stage of a step asks for them.
         if self._polynomial is not None:
             s = t - self.start
@@ -100,8 +102,8 @@ class Piece:
 
     @property
     def cubics(self) -> tuple[float, FloatArray] | None:
-        """The start, s, and the coefficients of ``_polynomial``; None without such coefficients."""
-        return None if self._polynomial is None else (self.start, self._polynomial)
+        """The start, s, and the coefficients of ``_polynomial``; None without them, or where no input moves."""
+        return None if not self.moves or self._polynomial is None else (self.start, self._polynomial)
 
     @cached_property
     def _polynomial(self) -> FloatArray | None:
@@ -135,7 +137,7 @@ class Piece:
 
     def values_at(self, times: FloatArray) -> FloatArray:
         """The values alone at T times, shape (T, inputs)."""
-        if self._polynomial is not None:
+        if self.moves and self._polynomial is not None:
             powers = np.vander(times - self.start, 4, increasing=True)
             # No product of matrices: it rounds a row by its place among the others.
             return np.asarray(np.einsum("tk,kn->tn", powers, self._polynomial[:, : len(self._constant)]))

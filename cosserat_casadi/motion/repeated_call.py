@@ -9,7 +9,7 @@ import ctypes
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import NamedTuple
 
 import casadi as ca
@@ -29,22 +29,28 @@ class MachineCode:
     """A function in a shared object, and the memory of a :class:`RepeatedCall` of it, for calls in C.
 
     Attributes:
+        function: the function; it keeps its library loaded.
         address: address of the function.
         arguments: addresses of its arguments.
         results: addresses of its results.
         integers: work memory of the function for integers.
         scratch: work memory of the function for real numbers.
-        library: the library that contains the function.
         path: path of the library's file.
     """
 
+    function: Callable[..., int]
     address: int
     arguments: npt.NDArray[np.uintp]
     results: npt.NDArray[np.uintp]
     integers: npt.NDArray[np.longlong]
     scratch: FloatArray
-    library: ctypes.CDLL
     path: str
+
+    @property
+    def bound(self) -> Callable[[], int]:
+        """The call of the function from Python."""
+        arrays = (self.arguments, self.results, self.integers, self.scratch)
+        return partial(self.function, *(array.ctypes.data for array in arrays), 0)
 
 
 class RepeatedCall:
@@ -61,6 +67,7 @@ class RepeatedCall:
         evaluate: function that reads the arguments and writes the results.
         code: the function in machine code; None if CasADi's virtual machine runs it.
         program: program of the function for a loop in C; None if none was written.
+        at_stages: the function in machine code at the three stages of a step, a column each; None if there is none.
         program_after: function of the iterations that a motion has taken without a program ↦ the program, or None if
             it does not pay yet; None if no program is to be written.
 
@@ -69,24 +76,25 @@ class RepeatedCall:
     """
 
     def __init__(self, function: ca.Function, results: int = 1, library: str | os.PathLike[str] | None = None) -> None:
-        arguments = [function.sparsity_in(i) for i in range(function.n_in())]
-        wanted = [function.sparsity_out(i) for i in range(results)]
-        for sparsity in (*arguments, *wanted):
-            if not sparsity.is_dense():
-                raise ValueError(f"{function.name()} has an argument or a result that is not dense")
-        buffer, self.evaluate = function.buffer()
-        self.arguments = [np.zeros(sparsity.nnz()) for sparsity in arguments]
+        sizes = _sizes(function, results)
+        self.arguments = [np.zeros(count) for count in sizes.arguments]
         # CasADi stores column by column.
-        self.results = [np.zeros(sparsity.shape, order="F") for sparsity in wanted]
-        for number, argument in enumerate(self.arguments):
-            buffer.set_arg(number, argument.data)
-        for number, result in enumerate(self.results):
-            buffer.set_res(number, result.ravel(order="K").data)
-        # The evaluation reads and writes the buffer's memory: it has to live as long.
-        self._buffer = buffer
+        self.results = [np.zeros(shape, order="F") for shape in sizes.results]
         self.program: ScalarProgram | None = None
+        self.at_stages: RepeatedCall | None = None
         self.program_after: Callable[[int], ScalarProgram | None] | None = None
-        self.code = None if library is None else self._machine_code(function, os.fspath(library))
+        self.code: MachineCode | None = None
+        self.evaluate: Callable[[], object]
+        if library is not None:
+            self.code = self._machine_code(function.name(), os.fspath(library), sizes)
+            self.evaluate = self.code.bound
+            return
+        # The evaluation reads and writes the buffer's memory: it has to live as long.
+        self._buffer, self.evaluate = function.buffer()
+        for number, argument in enumerate(self.arguments):
+            self._buffer.set_arg(number, argument.data)
+        for number, result in enumerate(self.results):
+            self._buffer.set_res(number, result.ravel(order="K").data)
 
     @property
     def library(self) -> str | None:
@@ -109,15 +117,44 @@ class RepeatedCall:
             argument[:] = value
         self.evaluate()
 
-    def _machine_code(self, function: ca.Function, library: str) -> MachineCode:
-        loaded = _loaded(library)
-        address = ctypes.cast(getattr(loaded, function.name()), ctypes.c_void_p).value
-        assert address is not None, "a function has an address"
-        arguments, results = (np.zeros(size, dtype=np.uintp) for size in (function.sz_arg(), function.sz_res()))
+    def _machine_code(self, name: str, library: str, sizes: _Sizes) -> MachineCode:
+        function, address = _entry(name, library)
+        pointers_in, pointers_out, integers_wanted, reals_wanted = sizes.work
+        arguments, results = (np.zeros(size, dtype=np.uintp) for size in (pointers_in, pointers_out))
         arguments[: len(self.arguments)] = [array.ctypes.data for array in self.arguments]
         results[: len(self.results)] = [array.ctypes.data for array in self.results]
-        integers, scratch = np.zeros(max(function.sz_iw(), 1), dtype=np.longlong), np.zeros(max(function.sz_w(), 1))
-        return MachineCode(address, arguments, results, integers, scratch, loaded, library)
+        integers, scratch = np.zeros(integers_wanted, dtype=np.longlong), np.zeros(reals_wanted)
+        return MachineCode(function, address, arguments, results, integers, scratch, library)
+
+
+class _Sizes(NamedTuple):
+    """Sizes of the arrays of a function in C.
+
+    Attributes:
+        arguments: number of entries of each argument.
+        results: shape of each result.
+        work: numbers of pointers to arguments and to results, and of integers and real numbers of its work memory.
+    """
+
+    arguments: tuple[int, ...]
+    results: tuple[tuple[int, int], ...]
+    work: tuple[int, int, int, int]
+
+
+@lru_cache(maxsize=MOST_LOADED)
+def _sizes(function: ca.Function, results: int) -> _Sizes:
+    """Sizes of the arrays of a function; to ask CasADi for them takes longer than a call of a short function.
+
+    Raises:
+        ValueError: an argument or a result is not dense.
+    """
+    arguments = [function.sparsity_in(i) for i in range(function.n_in())]
+    wanted = [function.sparsity_out(i) for i in range(results)]
+    if not all(sparsity.is_dense() for sparsity in (*arguments, *wanted)):
+        raise ValueError(f"{function.name()} has an argument or a result that is not dense")
+    work = function.sz_arg(), function.sz_res(), max(function.sz_iw(), 1), max(function.sz_w(), 1)
+    counts = tuple(sparsity.nnz() for sparsity in arguments)
+    return _Sizes(counts, tuple(sparsity.shape for sparsity in wanted), work)
 
 
 class Libraries(NamedTuple):
@@ -143,9 +180,19 @@ def external(name: str, library: str) -> ca.Function:
 
 
 @lru_cache(maxsize=MOST_LOADED)
-def _loaded(library: str) -> ctypes.CDLL:
-    """Load a shared object, once in a process: the name of a file determines its contents."""
-    return ctypes.CDLL(library)
+def _entry(name: str, library: str) -> tuple[Callable[..., int], int]:
+    """Load a function of a shared object and its address, once: the name of a file determines its contents."""
+    function = getattr(ctypes.CDLL(library), name)
+    function.argtypes = [*[ctypes.c_void_p] * 4, ctypes.c_int]
+    address = ctypes.cast(function, ctypes.c_void_p).value
+    assert address is not None, "a function has an address"
+    return function, address
+
+
+@lru_cache(maxsize=MOST_LOADED)
+def has_function(name: str, library: str) -> bool:
+    """Whether a shared object has a function."""
+    return hasattr(ctypes.CDLL(library), name)
 
 
 def repeated(function: ca.Function, library: str | None, results: int = 1, *, as_scalars: bool = True) -> RepeatedCall:

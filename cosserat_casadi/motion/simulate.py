@@ -631,8 +631,11 @@ def tolerance_of(scene: Scene, simulation: Simulation) -> float:
 
 
 def moving_inputs(model: Model) -> MovingInputs:
-    """The inputs of a model over time."""
-    return MovingInputs(model.inputs, model.scene.motions, model.pack())
+    """The inputs of a model over time, made once for a model."""
+    if "_moving_inputs" not in model.__dict__:
+        model.__dict__["_moving_inputs"] = MovingInputs(model.inputs, model.scene.motions, model.pack())
+    inputs: MovingInputs = model.__dict__["_moving_inputs"]
+    return inputs
 
 
 def started(

@@ -18,7 +18,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.levels import nodes_for_turn
 from cosserat_casadi.accuracy.refine import FINER_MODES, solve_rods
 from cosserat_casadi.accuracy.scene_solver import TIGHT
-from cosserat_casadi.equilibrium.answer_error import FRICTION_IN_MOTION, SAFETY
+from cosserat_casadi.equilibrium.answer_error import FRICTION_IN_MOTION, FRICTION_OF_CONTACT, SAFETY
 from cosserat_casadi.equilibrium.contact.contact_state import given_inputs, without_contacts
 from cosserat_casadi.equilibrium.contact.pressing_contacts import PressingContacts, marginal_contact, pressing_contacts
 from cosserat_casadi.equilibrium.judge import correct, judge
@@ -533,7 +533,8 @@ def stability_sentences(
     if solution.contacts and solution.model.scene.touches_exactly:
         sentences.append(WHILE_PRESSED)
     if solution.contacts and solution.model.scene.rubs_exactly:
-        sentences.append(FRICTION_IN_MOTION.strip())
+        on_paths = solution.model.scene.rubs_along_exact_paths
+        sentences.append((FRICTION_OF_CONTACT if on_paths else FRICTION_IN_MOTION).strip())
     moved = list(dict.fromkeys(motion.input for motion in solution.model.scene.motions))
     if moved:
         sentences.append(ABOUT_REST.format(inputs=named(moved)))

@@ -140,7 +140,7 @@ class Arrangement:
         """
         nominal = self.equations.nominal
         size = nominal.model.size
-        forces = slice(size, size + len(nominal.force_units))
+        forces = slice(size, size + self.equations.pushes)
         here = self.at(self.load_factor)
         rate = self.rate(self.near, self.load_factor)
         load = float(np.linalg.norm(rate[:size]))
@@ -239,8 +239,7 @@ class Arrangement:
     def _arguments(self, z: FloatArray, load_factor: float) -> list[FloatArray]:
         """Arguments of the functions of :attr:`equations` at a point."""
         here = self.at(load_factor)
-        x, f, places = here.parts(z)
-        return [x, f, np.concatenate([places, here.theta]), here.given]
+        return here.numbers(z, here.given)
 
     def ends(self, rod: str, z: FloatArray) -> FloatArray:
         """Abscissae of the ends of a rod's elements."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -16,7 +17,14 @@ from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquatio
 from cosserat_casadi.equilibrium.contact.contact_judgement import judged
 from cosserat_casadi.equilibrium.contact.contact_search import Settling
 from cosserat_casadi.equilibrium.contact.contact_solve import LEAST_TOLERANCE, solve_contact
-from cosserat_casadi.equilibrium.contact.contact_state import TIP, Touch, load_sections, state_in, without_contacts
+from cosserat_casadi.equilibrium.contact.contact_state import (
+    TIP,
+    ContactState,
+    Touch,
+    load_sections,
+    state_in,
+    without_contacts,
+)
 from cosserat_casadi.equilibrium.solution import SectionForce, Solution, SolvedPoses
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -38,6 +46,8 @@ from cosserat_casadi.paths.equilibrium_path import (
     tested_stability,
 )
 from cosserat_casadi.paths.margins import Key, margins, violated
+
+RecordType = TypeVar("RecordType", bound="ContactPath")
 
 MOST_CHANGES = 100
 """Most changes of the arrangement along a path."""
@@ -85,7 +95,7 @@ class ContactPath(EquilibriumPath):
         for touch, ends, _ in arrangement.parts(self.x[index]):
             unit = self.model.discrete.contact_unit(touch.owner, of_body=touch.of_body)
             forces, inside = touch.sorted_forces(unit * ends)
-            contacts.append(_path_contact(touch, forces, inside))
+            contacts.append(path_contact(touch, forces, inside))
         return tuple(contacts)
 
     def solution(self, index: int) -> Solution:
@@ -269,6 +279,8 @@ class Travel:
         arrangement = self.arrangements[-1]
         _, last = self.points[-1]
         for change in changes(arrangement, arrangement.z(last), last.load_factor, key, X):
+            if not self._admits(change.state):
+                continue
             entry = entered(arrangement, last, change)
             if entry is None:
                 continue
@@ -276,6 +288,10 @@ class Travel:
             self.arrangements.append(entry.arrangement)
             return entry
         return None
+
+    def _admits(self, state: ContactState) -> bool:
+        """Whether contacts are followed."""
+        return True
 
     def _keep_change(self, entry: ArrangementEntry, last: ArcPoint) -> None:
         """Add the event of a change, with the equilibrium of the last point before it or the first point after it."""
@@ -299,12 +315,12 @@ class Travel:
                 1,
                 beyond,
                 arrangement=number,
-                contact=_path_contact(touch, ()),
+                contact=path_contact(touch, ()),
             )
         )
 
 
-def _path_contact(touch: Touch, forces: tuple[float, ...], inside: tuple[SectionForce, ...] = ()) -> PathContact:
+def path_contact(touch: Touch, forces: tuple[float, ...], inside: tuple[SectionForce, ...] = ()) -> PathContact:
     """A contact at its place, with the forces at its ends and at sections inside it, N."""
     start, end = float(touch.start), float(touch.end)
     on_rods = None if touch.other is None else (start, float(touch.other))
@@ -327,11 +343,6 @@ def follow_contact_path(
         progress: receives the largest factor reached.
     """
     limits = settings or ArcSettings()
-    model = moved.model
-    scene = without_contacts(model.scene)
-    grids = Grids(model.discretisation)
-    given, theta = np.split(moved.base, [model.inputs.size])
-    values = model.inputs.unpack(given)
     potential = loads_have_potential(moved)
     empty = path_along(
         moved,
@@ -343,16 +354,9 @@ def follow_contact_path(
         neutral=np.zeros(0, dtype=np.bool_) if potential else None,
         events=(),
     )
-    numbers = model.parameters.set_in(scene, model.parameters.unpack(theta)) if theta.size else scene
-    start = solve_contact(numbers, grids, values)
-    if not start.converged:
-        return replace(empty, message=f"{empty.message} {start.message}")
-    state = state_in(start.model.scene)
-    settling = Settling(scene, given, grids, NewtonSettings(), max(scene.accuracy.tolerance, LEAST_TOLERANCE))
-    equations = ContactEquations(scene, given, grids, state, theta)
-    z = settling.solved(equations, start)
-    if z is None:
-        return empty
+    equations, z, message = beginning(moved)
+    if equations is None:
+        return replace(empty, message=empty.message + message)
     arrangement = Arrangement(equations, moved.change, potential, limits, z, 0.0)
     growing_load = np.append(np.zeros(len(z)), 1.0)
     first = arrangement.curve.point(arrangement.y(z, 0.0), growing_load, 0.0)
@@ -360,10 +364,28 @@ def follow_contact_path(
         return empty
     travel = Travel(limits, branch, [arrangement])
     travel.run(first, progress)
-    return _record(empty, travel)
+    return record(empty, travel)
 
 
-def _record(empty: ContactPath, travel: Travel) -> ContactPath:
+def beginning(moved: InputChange[Model]) -> tuple[ContactEquations | None, FloatArray, str]:
+    """Equations of the contacts at factor 0 and their solution z; without an equilibrium None and a sentence on it."""
+    model = moved.model
+    scene = without_contacts(model.scene)
+    grids = Grids(model.discretisation)
+    given, theta = np.split(moved.base, [model.inputs.size])
+    values = model.inputs.unpack(given)
+    numbers = model.parameters.set_in(scene, model.parameters.unpack(theta)) if theta.size else scene
+    start = solve_contact(numbers, grids, values)
+    if not start.converged:
+        return None, np.zeros(0), f" {start.message}"
+    state = state_in(start.model.scene)
+    settling = Settling(scene, given, grids, NewtonSettings(), max(scene.accuracy.tolerance, LEAST_TOLERANCE))
+    equations = ContactEquations(scene, given, grids, state, theta)
+    z = settling.solved(equations, start)
+    return (None, np.zeros(0), "") if z is None else (equations, z, "")
+
+
+def record(empty: RecordType, travel: Travel) -> RecordType:
     """The followed path as arrays."""
     outcome = travel.outcome or PathOutcome.MAX_STEPS
     numbers = np.array([number for number, _ in travel.points], dtype=np.int64)

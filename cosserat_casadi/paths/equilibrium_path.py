@@ -52,6 +52,8 @@ class PathContact:
         of_body: whether it is a body that touches.
         inside: forces at sections inside a line.
         on_rods: X of either of two rods that touch; None of contact with an obstacle.
+        friction: force of friction on the rod, world axes, N; None without friction.
+        slips: whether the rod slides on the obstacle; None without friction.
     """
 
     obstacle: str
@@ -63,6 +65,8 @@ class PathContact:
     of_body: bool = False
     inside: tuple[SectionForce, ...] = ()
     on_rods: tuple[float, float] | None = None
+    friction: tuple[float, float, float] | None = None
+    slips: bool | None = None
 
 
 @dataclass(frozen=True)
@@ -71,7 +75,7 @@ class PathEvent:
 
     Attributes:
         kind: "limit" or "bifurcation"; or "touch", "lift_off", "point_to_line", "line_to_point", "slide_to_tip" or
-            "slide_from_tip" for a contact.
+            "slide_from_tip" for a contact; "slip" or "stick" with friction.
         factor: share of the input at the event.
         x: unknowns at the event, shape (model.size,).
         multiplicity: number of independent neutral directions at the event.
@@ -97,6 +101,8 @@ CONTACT_WORDS = {
     "slide_to_tip": "slide to the tip",
     "slide_from_tip": "slide from the tip",
     "slide_over_joint": "slide over a joint",
+    "slip": "slip",
+    "stick": "stick",
 }
 """Kinds of events that are changes of contact, in words."""
 

@@ -29,7 +29,7 @@ from cosserat_casadi.numerics.continuation import Path
 from cosserat_casadi.numerics.events import DETERMINANT, Arc
 from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.numerics.trace import Guard, PathOutcome, Trace, trace
-from cosserat_casadi.paths.contact_path import follow_contact_path
+from cosserat_casadi.paths.contact_path import ContactPath, follow_contact_path
 from cosserat_casadi.paths.equilibrium_path import (
     EquilibriumPath,
     InputChange,
@@ -39,6 +39,7 @@ from cosserat_casadi.paths.equilibrium_path import (
     tested_stability,
 )
 from cosserat_casadi.paths.friction_path import FrictionPath, follow_friction_path
+from cosserat_casadi.paths.rubbing_path import RubbingPath, follow_rubbing_path
 
 FROM_NOWHERE = (
     " Friction is counted from factor 0, where nothing rubs yet; no limit points and branches are looked for."
@@ -148,20 +149,28 @@ def follow_path(
             alone would have to hold a free rod.
     """
     model = model.at()
-    if first is not None and not isinstance(first, FrictionPath):
+    continued = RubbingPath if model.scene.touches_exactly else FrictionPath
+    if first is not None and not (model.rubs_on_paths and isinstance(first, continued)):
         problem = "is a path with friction from whose end another one goes on"
         raise SceneError(Problem("first", problem, "leave it out: a path without friction does not depend on the way"))
     followed = _followed(model, name, value, values)
     if model.scene.touches_exactly:
         refuse_held_by_contact(model.scene)
-        path = follow_contact_path(followed, branch=branch, settings=settings, progress=progress)
-        message = _sentence(path.outcome, path.factor) + path.stopped_at + left_out_on_paths(model.scene)
-        return _resolved(replace(path, message=message))
+        touching: ContactPath
+        if model.rubs_on_paths:
+            _refuse_branch(branch)
+            assert first is None or isinstance(first, RubbingPath)
+            followed = _followed(model, name, value, values, first)
+            touching = follow_rubbing_path(followed, settings or ArcSettings(), first=first, progress=progress)
+        else:
+            touching = follow_contact_path(followed, branch=branch, settings=settings, progress=progress)
+        message = _sentence(touching.outcome, touching.factor) + touching.stopped_at
+        if model.rubs_on_paths and first is None:
+            message += FROM_NOWHERE
+        return _resolved(replace(touching, message=message + left_out_on_paths(model.scene)))
     left_out = left_out_on_paths(model.scene)
     if model.rubs_on_paths:
-        if branch:
-            problem = "is of a path without friction: one that rubs goes on in increments"
-            raise SceneError(Problem("--branch", problem, "leave it out, or leave friction out"))
+        _refuse_branch(branch)
         followed = _followed(model.with_memory, name, value, values, first)
         rubbing = follow_friction_path(followed, settings or ArcSettings(), first=first, progress=progress)
         message = _sentence(rubbing.outcome, rubbing.factor) + (FROM_NOWHERE if first is None else "") + left_out
@@ -176,6 +185,17 @@ def follow_path(
     traced = trace(curve, branch=branch, progress=progress, guard=_smooth_guard(followed))
     path = _within_limits(_resolved(followed.record(traced)))
     return replace(path, message=path.message + left_out)
+
+
+def _refuse_branch(branch: int) -> None:
+    """A path with friction has no branches.
+
+    Raises:
+        SceneError: a branch is requested.
+    """
+    if branch:
+        problem = "is of a path without friction: one that rubs goes on in increments"
+        raise SceneError(Problem("--branch", problem, "leave it out, or leave friction out"))
 
 
 def _smooth_guard(followed: _Followed) -> Guard | None:

@@ -152,7 +152,8 @@ def _follow_refined(
         if model.rubs_on_paths:
             # Friction is integrated from point to point: their distance is refined with the modes, so that its error
             # shows too.
-            limits = replace(limits, load_factor_change=limits.load_factor_change / 2**level)
+            first, longest = limits.first / 2**level, limits.load_factor_change / 2**level
+            limits = replace(limits, first=first, load_factor_change=longest)
         return follow_path(model, name, value, values, branch=branch, settings=limits, progress=progress)
 
     scene = scene.baked()

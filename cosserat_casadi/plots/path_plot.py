@@ -32,6 +32,8 @@ MARKERS = {
     "slide_to_tip": ">",
     "slide_from_tip": "<",
     "slide_over_joint": "X",
+    "slip": "*",
+    "stick": "p",
 }
 """Marker of each kind of event."""
 

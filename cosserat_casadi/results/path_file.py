@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathEvent
+from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathContact, PathEvent
 from cosserat_casadi.results.contact_entry import contact_entry, place_entry, point_forces, rubbing_entries
 
 POSE_COLUMNS = ("x", "y", "z", "qw", "qx", "qy", "qz")
@@ -75,11 +75,16 @@ def _point_entries(path: EquilibriumPath) -> list[dict[str, Any]]:
         # Depths inside smooth obstacles are computed for the whole path at once.
         if path.model.scene.touches_exactly:
             entry["contacts"] = [
-                {**place_entry(contact), "kind": contact.kind, **point_forces(contact)}
+                {**place_entry(contact), "kind": contact.kind, **point_forces(contact), **_friction_entry(contact)}
                 for contact in path.contacts(index)
             ]
         entries.append(entry)
     return entries
+
+
+def _friction_entry(contact: PathContact) -> dict[str, Any]:
+    """Friction of a contact, N, and whether it slips; empty without friction."""
+    return {} if contact.friction is None else {"friction": contact.friction, "slips": contact.slips}
 
 
 def _event_entry(path: EquilibriumPath, event: PathEvent) -> dict[str, Any]:

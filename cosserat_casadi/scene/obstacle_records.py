@@ -127,7 +127,7 @@ class ObstacleRecord(Entry):
     friction: Coefficients = Field(
         0.0,
         description="coefficient μ of Coulomb's friction, without unit, or a table of coefficients along "
-        "a rod, back and across it: with width in motion and along paths, without in motion alone",
+        "a rod, back and across it: in motion, and along paths; without a width a table acts in motion alone",
     )
     slip_speed: Positive = Field(
         1e-3,
@@ -165,6 +165,11 @@ class ObstacleRecord(Entry):
     def rubs(self) -> bool:
         """Whether there is friction."""
         return max(self.coefficients) > 0.0
+
+    @property
+    def rubs_on_paths(self) -> bool:
+        """Whether there is friction on rods along paths: without a width by one coefficient, not a table."""
+        return self.rubs and self.presses_rods and (self.is_smooth or len(set(self.coefficients)) == 1)
 
     @property
     def presses_rods(self) -> bool:

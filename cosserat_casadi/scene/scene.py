@@ -250,9 +250,14 @@ inputs = ["push.force", "cable.tension"]
 
     @property
     def rubs_exactly(self) -> bool:
-        """Whether there is friction in exact contact, which acts in motion."""
+        """Whether there is friction in exact contact, of rods with obstacles on paths too."""
         obstacles = any(obstacle.rubs and not obstacle.is_smooth for obstacle in self.obstacles)
         return obstacles or any(pair.rubs and pair.exact for pair in self.rod_contacts)
+
+    @property
+    def rubs_along_exact_paths(self) -> bool:
+        """Whether there is friction in exact contact along paths: of rods with obstacles, by one coefficient."""
+        return any(obstacle.rubs_on_paths and not obstacle.is_smooth for obstacle in self.obstacles)
 
     def in_proportion(self) -> Scene:
         """The scene with coefficients of materials scaled to Young's moduli, which as parameters scale whole laws."""

@@ -201,6 +201,21 @@ def test_crossed_wires_are_those_of_shooting_within_the_told_error(radius: float
     assert max(shot(found, (radius, radius), (push, np.zeros(3)))) < found.error_estimate
 
 
+@pytest.mark.slow
+def test_wires_that_slide_far_are_those_of_shooting_within_the_told_error() -> None:
+    """On cushions a wire slides in jerks, and stalls: the loads grow in exact contact instead."""
+    radius = 6e-4 * LENGTH
+    # The pushed rod is the first one, along x; the other one turns to it.
+    other = {"position": [0.0975, -0.0332, 0.0], "tangent": [-0.573, -0.8196, 0]}
+    other["position"] = [*(0.068 * np.array([1.0, 0, 0]) + 0.0405 * np.array([0.573, 0.8196, 0]))[:2], -0.0028]
+    turned = np.array([[-0.573, 0.8196, 0], [-0.8196, -0.573, 0], [0, 0, 1.0]])
+    push = 4.5 * bending(radius) / LENGTH**2 * turned @ [-0.178, -0.254, -0.951]
+    tables = pressed(push.tolist(), other, (radius, radius), accuracy={"tolerance": 1e-4})
+    found = solve(scene_from_dict(tables))
+    assert found.converged and found.error_estimate is not None
+    assert max(shot(found, (radius, radius), (push, np.zeros(3)))) < found.error_estimate
+
+
 def test_jacobian_is_that_by_differences() -> None:
     equations, z = equations_at(crossed())
     jacobian = equations.jacobian(z, equations.given)

@@ -34,7 +34,7 @@ def _merit_sentence(path: EquilibriumPath) -> str:
     changes = sum(event.contact is not None for event in path.events)
     parts = [f"{len(path.factor)} points"]
     # Paths with friction have no search for events.
-    if path.model.inputs.memory is None:
+    if not path.model.rubs_on_paths:
         parts.append(f"{len(path.events) - changes} limit points and bifurcations")
     if path.model.scene.touches_exactly:
         parts.append(f"{changes} changes of contact")

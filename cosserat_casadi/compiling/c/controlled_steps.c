@@ -7,7 +7,7 @@
 /* Loops and sums are put into vectors, and little else, so that the first motion waits for it less. Of all that O3 does
    the operations of a program alone gain by the rest too. */
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("O1", "tree-loop-vectorize", "tree-slp-vectorize", "vect-cost-model=dynamic")
+#pragma GCC optimize("O1", "tree-loop-vectorize", "tree-slp-vectorize", "vect-cost-model=dynamic", "unswitch-loops")
 #define FASTEST __attribute__((optimize("O3")))
 #else
 #define FASTEST
@@ -78,6 +78,12 @@ typedef struct {
   real **kernel_results;
   long long *kernel_integers;
   real *kernel_scratch;
+  /* The same at all stages at once; null where there is none. */
+  casadi_kernel at_stages;
+  const real **at_stages_arguments;
+  real **at_stages_results;
+  long long *at_stages_integers;
+  real *at_stages_scratch;
   /* Its derivatives likewise: they read linearised_at and the inputs, and write the matrices. */
   casadi_kernel derivatives; /* null where Python evaluates */
   const real **derivatives_arguments;
@@ -102,6 +108,9 @@ typedef struct {
   real *stage_v;
   real *stage_a;
   real *stage_results;
+  real *stage_input_values;
+  real *stage_input_rates;
+  real *stage_input_accelerations;
   real *matrices; /* stiffness, damping, mass at the state of the Jacobian in use */
   real *linearised_at; /* that state: x, v, a */
   real *kept_at;       /* and where it was evaluated when the last step was accepted */
@@ -167,10 +176,15 @@ enum { STAGES = 3, LANES = 4, PLANES = 3, FACTS = 7, VECTORS = 6, ORDERS = 3 };
 #define IS_SHAPE (work->differential)
 #define DISPLACEMENTS (work->weights)
 
+/* Four sums, none of which waits for the others. */
 static int all_finite(const real *a, int count) {
-  real sum = 0;
-  for (int i = 0; i < count; i++) sum += a[i] * 0;
-  return sum == 0;
+  real sums[4] = {0, 0, 0, 0};
+  int i = 0;
+  for (; i + 4 <= count; i += 4) {
+    for (int k = 0; k < 4; k++) sums[k] += a[i + k] * 0;
+  }
+  for (; i < count; i++) sums[0] += a[i] * 0;
+  return sums[0] + sums[1] + sums[2] + sums[3] == 0;
 }
 
 /* ---- Equations ---- */
@@ -285,7 +299,7 @@ static void motion_in(real size, real share, const real *values, const real *int
   }
 }
 
-/* ---- Inverse dynamics at all stages at once: scalar_program.py ---- */
+/* ---- Inverse dynamics at all stages at once: scalar_program.py, straight_program.py ---- */
 
 #ifdef FOURS_IN_VECTORS
 #define EVERY(assignment) \
@@ -319,8 +333,22 @@ static void fill_lane(int lane, int first, const real *values, int count, worksp
   for (int i = 0; i < count; i++) work->slots[LANES * (first + i) + lane] = values[i];
 }
 
+static int is_together(const workspace *work) { return work->program || work->at_stages; }
+
 /* The arguments of a stage are where inverse dynamics is evaluated. */
 static void fill_stage(int stage, workspace *work) {
+  if (work->at_stages) {
+    const size_t bytes = (size_t)OWN * sizeof(real);
+    const size_t of_inputs = (size_t)work->inputs * sizeof(real);
+    const int first = stage * work->inputs;
+    memcpy(work->stage_x + stage * OWN, work->x, bytes);
+    memcpy(work->stage_v + stage * OWN, work->v, bytes);
+    memcpy(work->stage_a + stage * OWN, work->a, bytes);
+    memcpy(work->stage_input_values + first, work->input_values, of_inputs);
+    memcpy(work->stage_input_rates + first, work->input_rates, of_inputs);
+    memcpy(work->stage_input_accelerations + first, work->input_accelerations, of_inputs);
+    return;
+  }
   fill_lane(stage, 0, work->x, OWN, work);
   fill_lane(stage, OWN, work->v, OWN, work);
   fill_lane(stage, 2 * OWN, work->a, OWN, work);
@@ -330,7 +358,17 @@ static void fill_stage(int stage, workspace *work) {
 }
 
 /* Adds inverse dynamics to the part of contacts. */
-static void add_program(real *residuals, workspace *work) {
+static void add_together(real *residuals, workspace *work) {
+  if (work->at_stages) {
+    work->at_stages(work->at_stages_arguments, work->at_stages_results, work->at_stages_integers,
+                    work->at_stages_scratch, 0);
+    for (int stage = 0; stage < STAGES; stage++) {
+      for (int i = 0; i < OWN; i++) residuals[stage * N + i] += work->stage_results[stage * OWN + i];
+    }
+    return;
+  }
+  /* The lane that is left over repeats the last stage. */
+  fill_stage(STAGES, work);
   program_run(work->program, work->program_lines, work->slots);
   for (int stage = 0; stage < STAGES; stage++) {
     for (int i = 0; i < OWN; i++) residuals[stage * N + i] += work->slots[LANES * (work->program_arguments + i) + stage];
@@ -350,7 +388,7 @@ static real residuals_of_stages(const step_start *start, const real *unknowns, r
               a, work);
     if (work->residual_of_stages) continue;
     if (work->moving) copy_inputs(work->stage_inputs + 3 * stage * work->inputs, work);
-    if (work->program) {
+    if (is_together(work)) {
       fill_stage(stage, work);
       memset(residuals + stage * N, 0, bytes);
       push_contacts(residuals + stage * N, work);
@@ -359,11 +397,7 @@ static real residuals_of_stages(const step_start *start, const real *unknowns, r
     evaluate(work->stage_times[stage], work);
     memcpy(residuals + stage * N, work->residual, bytes);
   }
-  if (work->program) {
-    /* The lane that is left over repeats the last stage. */
-    fill_stage(STAGES, work);
-    add_program(residuals, work);
-  }
+  if (is_together(work)) add_together(residuals, work);
   if (work->residual_of_stages) {
     call(work->residual_of_stages, work->time, work);
     memcpy(residuals, work->stage_results, STAGES * bytes);

@@ -30,6 +30,7 @@ from cosserat_casadi.equilibrium.contact.gaps import obstacle_of
 from cosserat_casadi.equilibrium.contact.shape_projection import projected
 from cosserat_casadi.equilibrium.load_path import column
 from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.loads.contact_friction import ContactFriction
 from cosserat_casadi.loads.contact_line import ContactLine
 from cosserat_casadi.loads.rods_point import RodsPoint
 from cosserat_casadi.maths.typing import FloatArray, Matrix
@@ -127,6 +128,9 @@ class Placed:
             elif isinstance(load, ContactLine):
                 unit = discrete.tension_unit(load.rod) / discrete.rods[load.rod].length
                 units += [unit] * len(load.force[0])
+            elif isinstance(load, ContactFriction):
+                assert load.rod is not None, "friction on a rod"
+                units += [discrete.tension_unit(load.rod)] * len(load.force)
             elif load.body is not None:
                 units.append(discrete.contact_unit(load.body, of_body=True))
             else:
@@ -306,16 +310,20 @@ class ContactEquations:
         vars(other).update({name: value for name, value in vars(self).items() if name not in ("given", "theta")})
         return other
 
+    def loaded(self, scene: scenes.Scene, state: ContactState, modes: Mapping[str, int]) -> scenes.Scene:
+        """A scene with the forces of contacts as loads."""
+        return with_contacts(scene, state, modes)
+
     def placed(self, state: ContactState, given: FloatArray | None = None) -> Placed:
         """The model of the contacts at known places, for the inputs ``given`` or else those of the equations."""
         modes = self.grids.bending_modes(self.scene)
-        loaded = with_contacts(self.scene.baked(), state, modes)
+        loaded = self.loaded(self.scene.baked(), state, modes)
         model = build(loaded, self.grids.discretisation(loaded))
         if self.parameters.size:
             # Unknowns keep the units of the scene's own numbers.
             scene = self.parameters.set_in(self.scene, self.parameters.unpack(self.theta))
             state = self._with_seams(state, scene)
-            model = Model(with_numbers(model.discrete, with_contacts(scene, state, modes)))
+            model = Model(with_numbers(model.discrete, self.loaded(scene, state, modes)))
         return Placed(model, state, self.given if given is None else given, modes)
 
     @cached_property
@@ -327,6 +335,11 @@ class ContactEquations:
     def nominal(self) -> Placed:
         """The model at the first places of contact; other places move its elements."""
         return replace(self, scene=self.scene.baked()).placed(self.state)
+
+    @property
+    def pushes(self) -> int:
+        """Number of the forces along normals."""
+        return len(self.nominal.force_units)
 
     @cached_property
     def slope_rows(self) -> list[int]:
@@ -343,6 +356,9 @@ class ContactEquations:
     @cached_property
     def written(self) -> Written:
         """The equations as expressions."""
+        return self._write()
+
+    def _write(self) -> Written:
         nominal = self.nominal
         x = ca.MX.sym("x", nominal.model.size)
         f = ca.MX.sym("f", len(nominal.force_units))
@@ -363,7 +379,7 @@ class ContactEquations:
         state = self.state.at([p[i] for i in range(count)])
         scene = self.parameters.written(self.scene.baked(), p[count:])
         state = self._with_seams(state, scene)
-        written = with_contacts(scene, state, self.nominal.modes)
+        written = self.loaded(scene, state, self.nominal.modes)
         return Model(with_numbers(self.nominal.model.discrete, written, parameters)), state
 
     def _with_seams(self, state: ContactState, scene: scenes.Scene) -> ContactState:
@@ -444,15 +460,18 @@ class ContactEquations:
 
     def residual(self, z: FloatArray, given: FloatArray) -> FloatArray:
         """Residual of balance and gaps for inputs; NaN if element ends would not ascend along a rod."""
-        x, f, p = self.parts(z)
-        if not self.in_order(p):
+        if not self.in_order(self.parts(z)[2]):
             return np.full(len(z), np.nan)
-        return column(self._functions[0](x, f, np.concatenate([p, self.theta]), given))
+        return column(self._functions[0](*self.numbers(z, given)))
+
+    def numbers(self, z: FloatArray, given: FloatArray) -> list[FloatArray]:
+        """Values of the arguments of the functions of :attr:`written`."""
+        x, f, p = self.parts(z)
+        return [x, f, np.concatenate([p, self.theta]), given]
 
     def _derivatives(self, z: FloatArray, given: FloatArray) -> FloatArray:
         """Derivatives of the residual by z, then by the parameters of the scene."""
-        x, f, p = self.parts(z)
-        return np.asarray(self._functions[1](x, f, np.concatenate([p, self.theta]), given).full())
+        return np.asarray(self._functions[1](*self.numbers(z, given)).full())
 
     def jacobian(self, z: FloatArray, given: FloatArray) -> FloatArray:
         """Derivative of the residual by z."""
@@ -460,8 +479,7 @@ class ContactEquations:
 
     def by_inputs(self, z: FloatArray, given: FloatArray) -> FloatArray:
         """Derivative of the residual by the inputs, shape (len(z), inputs)."""
-        x, f, p = self.parts(z)
-        return np.asarray(self._by_arguments(x, f, np.concatenate([p, self.theta]), given).full())
+        return np.asarray(self._by_arguments(*self.numbers(z, given)).full())
 
     def rate(self, z: FloatArray, change: FloatArray, of_parameters: FloatArray) -> FloatArray:
         """Rate of the residual as inputs and parameters of these equations change, shape (len(z),)."""

@@ -14,9 +14,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.body_obstacles import seen_directions, seen_positions
+from cosserat_casadi.equilibrium.contact.body_obstacles import seen_directions, seen_positions, world_directions
 from cosserat_casadi.equilibrium.contact.contact_search import ContactEquilibrium
-from cosserat_casadi.equilibrium.contact.contact_state import Touch, is_sought
+from cosserat_casadi.equilibrium.contact.contact_state import Touch, contact_loads, is_sought
 from cosserat_casadi.equilibrium.contact.gaps import body_normal, normals
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_along
 from cosserat_casadi.equilibrium.contact.rod_gaps import distance_of_lines
@@ -24,6 +24,7 @@ from cosserat_casadi.equilibrium.judge import stability_note
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, restricted, stability_of, variations
 from cosserat_casadi.equilibrium.strain_limits import within_limits
+from cosserat_casadi.loads.contact_friction import ContactFriction
 from cosserat_casadi.maths.chebyshev import legendre_polynomials
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
@@ -83,7 +84,7 @@ def contacts_of(found: ContactEquilibrium) -> tuple[Contact, ...]:
         zero = PRESSING * found.largest_force
         # A pull that is rounding alone counts as zero.
         forces = unit * np.where((carried < 0.0) & (carried > -zero), 0.0, carried)
-        total = forces @ _normals(found, touch)
+        total = forces @ _normals(found, touch) + _friction(found, touch)
         if touch.is_line:
             total = total + unit * _resultant(found, touch, found.placed.obstacle(touch.obstacle), line)
         ends, sections = touch.sorted_forces(forces)
@@ -103,6 +104,19 @@ def contacts_of(found: ContactEquilibrium) -> tuple[Contact, ...]:
             )
         )
     return tuple(contacts)
+
+
+def _friction(found: ContactEquilibrium, touch: Touch) -> FloatArray:
+    """Friction at a point of contact on a path, world axes, shape (3,), N; zero without friction."""
+    values = found.placed.model.inputs.unpack(found.solution.inputs)
+    for load in contact_loads(found.placed.model.scene):
+        if isinstance(load, ContactFriction) and (load.rod, load.obstacle.name, load.at) == (
+            touch.owner,
+            touch.obstacle,
+            touch.start,
+        ):
+            return world_directions(found.solution, load.obstacle, values[f"{load.name}.force"].ravel())
+    return np.zeros(3)
 
 
 def _normals(found: ContactEquilibrium, touch: Touch) -> FloatArray:

@@ -67,6 +67,15 @@ LEAST_TOLERANCE = 1e-9
 STAYING = 0.9
 """Ratio to the error that contacts left on coarser modes above which more modes do not mend the error."""
 
+FIRST_SHARE = 0.5
+"""First share of the loads at which rods that touch rods are looked for, over the share at which cushions give out."""
+
+LONGEST_SHARE = 0.2
+"""Largest growth of that share in a step."""
+
+SHORTEST_SHARE = 1e-3
+"""Growth of that share below which the loads grow no further."""
+
 BESIDE_JOINT = 0.15
 """Distance from the joint of two rods within which a stretch on soft cushions may lie on both rods."""
 
@@ -116,6 +125,9 @@ def solve_contact(
         admits=lambda shape: not passes_through(cushioned, shape, deepest=inf),
         unmet_before=unmet_before,
     )
+    if not cushioned.converged and not holds and bare.rods_touch_exactly:
+        found = _under_growing_loads(settling, cushioned)
+        holds = found is not None
     if not cushioned.converged and not holds:
         return replace(cushioned, iterations=settling.iterations)
     if found is None:
@@ -186,6 +198,46 @@ def _more_modes_mend(settling: Settling, found: ContactEquilibrium, admits: Call
 def stays_unmet(found: ContactEquilibrium, before: float, tolerance: float) -> bool:
     """Whether contacts have an error above a tolerance that is not below the error on coarser modes either."""
     return found.unmet() > max(tolerance, STAYING * before)
+
+
+def _under_growing_loads(settling: Settling, cushioned: Solution) -> ContactEquilibrium | None:
+    """The equilibrium with contacts that hold, at the end of steps in which the loads of the scene grow.
+
+    On cushions rods that cross slide over each other in jerks, from one section to the next, and off each other's ends;
+    in exact contact they do not. None if the steps do not lead to the whole loads.
+
+    Args:
+        settling: the search at the whole loads.
+        cushioned: rods on cushions, at the share of the loads that was reached.
+    """
+    scene = settling.scene
+    layout = input_layout(scene)
+    owners = {record.name for record in (*scene.loads, *scene.actuators)}
+    is_load = np.zeros(layout.size, dtype=bool)
+    for entry, span in layout:
+        is_load[span] = entry.owner in owners
+
+    def at(share: float) -> Settling:
+        scaled = np.where(is_load, share * settling.given, settling.given)
+        return replace(settling, given=scaled, iterations=0)
+
+    share = FIRST_SHARE * cushioned.load_factor
+    start = approach(scene, layout.unpack(at(share).given))
+    if not start.converged:
+        return None
+    found = settled_near(at(share), start, first_state(start))
+    step = LONGEST_SHARE / 4
+    while found is not None and share < 1.0 and step > SHORTEST_SHARE:
+        target = min(share + step, 1.0)
+        search = at(target)
+        next_found = settled_near(search, found.solution)
+        settling.iterations += search.iterations
+        if next_found is None:
+            step /= 2
+            continue
+        found, share = next_found, target
+        step = min(1.5 * step, LONGEST_SHARE)
+    return found if share == 1.0 else None
 
 
 def _guesses(cushioned: Solution, first: ContactState) -> list[tuple[ContactState, Solution]]:

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.solution import SectionForce
+from cosserat_casadi.loads.contact_friction import ContactFriction
 from cosserat_casadi.loads.contact_line import ContactLine
 from cosserat_casadi.loads.contact_point import ContactPoint
 from cosserat_casadi.loads.rods_point import RodsPoint
@@ -396,17 +397,25 @@ def continuations(scene: scenes.Scene) -> dict[str, str]:
 
 def with_contacts(scene: scenes.Scene, state: ContactState, modes: Mapping[str, int]) -> scenes.Scene:
     """The scene with the forces of its contacts as loads with inputs as magnitudes."""
-    loads = state.loads(scene, modes)
+    return with_loads(scene, state.loads(scene, modes))
+
+
+def with_loads(scene: scenes.Scene, loads: Sequence[scenes.LoadRecord]) -> scenes.Scene:
+    """The scene with further loads, whose forces are inputs."""
     changes: dict[str, object] = {"loads": (*scene.loads, *loads)}
     if scene.inputs is not None:
         changes["inputs"] = (*scene.inputs, *(f"{load.name}.force" for load in loads))
     return scene.model_copy(update=changes)
 
 
-def contact_loads(scene: scenes.Scene) -> list[ContactPoint | ContactLine | RodsPoint]:
+ContactForce = ContactPoint | ContactLine | RodsPoint | ContactFriction
+"""Loads that are forces of contacts."""
+
+
+def contact_loads(scene: scenes.Scene) -> list[ContactForce]:
     """Loads of a scene that are forces of contacts; no scene file has them."""
     loads: Sequence[scenes.LoadRecord] = scene.loads
-    return [load for load in loads if isinstance(load, ContactPoint | ContactLine | RodsPoint)]
+    return [load for load in loads if isinstance(load, ContactForce)]
 
 
 def without_contacts(scene: scenes.Scene) -> scenes.Scene:
