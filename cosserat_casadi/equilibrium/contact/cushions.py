@@ -175,20 +175,17 @@ def _thickened(scene: scenes.Scene, values: Values) -> scenes.Scene:
     if all(obstacle.thickness >= 2 * least for obstacle in scene.obstacles):
         return scene
     model = cushioned(scene)
+    rods = model.discrete.rods
     unloaded = Barriers(model, model.pack(values)).unloaded
-    apart = dict.fromkeys((obstacle.name for obstacle in scene.obstacles), 2 * least)
-    for rod, obstacle in pairs(scene):
-        gap = gap_along(unloaded, rod, obstacle, DENSE).min() * model.discrete.rods[rod].properties.length
-        apart[obstacle.name] = min(apart[obstacle.name], max(float(gap), 0.0))
-    for body, obstacle in body_pairs(scene):
-        gap = gap_at(obstacle, body, unloaded.body(body.name))
-        apart[obstacle.name] = min(apart[obstacle.name], max(gap, 0.0))
+    gaps = [(bar.name, rods[rod].length * gap_along(unloaded, rod, bar, DENSE).min()) for rod, bar in pairs(scene)]
+    gaps += [(bar.name, gap_at(bar, body, unloaded.body(body.name))) for body, bar in body_pairs(scene)]
 
     def thick(obstacle: scenes.ObstacleRecord) -> scenes.ObstacleRecord:
-        radius = obstacle.thickness / 2
-        if radius >= least:
+        if obstacle.thickness >= 2 * least:
             return obstacle
-        return obstacle.model_copy(update={"radius": min(least, radius + apart[obstacle.name] / 2)})
+        apart = min((gap for name, gap in gaps if name == obstacle.name), default=0.0)
+        radius = min(least, (obstacle.thickness + max(apart, 0.0)) / 2)
+        return obstacle.model_copy(update={"radius": float(radius)})
 
     return scene.model_copy(update={"obstacles": tuple(map(thick, scene.obstacles))})
 
