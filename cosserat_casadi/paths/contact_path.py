@@ -166,7 +166,7 @@ class Guard:
         arrangement = self.arrangement
         at_start = margins(arrangement, arrangement.z(arc.start), arc.start.load_factor)
         at_end = margins(arrangement, arrangement.z(end), end.load_factor)
-        first: ArcPoint | None = None
+        first, crossed = end, None
         for key in violated(at_end, arrangement.tolerance):
             before = at_start.get(key)
             if before is None or before.value <= 0.0:
@@ -176,16 +176,19 @@ class Guard:
                 zero = self._zero(Arc(arc.curve, arc.start, end), key)
             if zero is None:
                 return None
-            if first is None or zero.length < first.length:
-                first = zero
-                X = margins(arrangement, arrangement.z(zero), zero.load_factor)[key].X
-                self.crossed = (key, X)
-        if first is not None:
-            return first
-        # The rod may have passed a thin obstacle.
-        if arrangement.goes_through(arc.start, end):
-            return None
-        return end
+            if crossed is None or zero.length < first.length:
+                first, crossed = zero, key
+        if crossed is None:
+            # The rod may have passed a thin obstacle.
+            return None if arrangement.goes_through(arc.start, end) else end
+        found = margins(arrangement, arrangement.z(first), first.load_factor)
+        if first is not arc.start:
+            # Rods that touch this late in the step may have passed other thin rods or obstacles before.
+            overlooked = any(key != crossed for key in violated(found, arrangement.tolerance))
+            if overlooked or arrangement.goes_through(arc.start, first):
+                return None
+        self.crossed = (crossed, found[crossed].X)
+        return first
 
     def _zero(self, arc: Arc, key: Key) -> ArcPoint | None:
         """The point at which a margin vanishes along a step."""

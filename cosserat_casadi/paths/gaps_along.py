@@ -107,6 +107,10 @@ class GapsAlong(ABC):
     def at(self, X: float) -> tuple[float, float, float]:
         """Distance and its first and second derivative by X; at an element end from the side of the base."""
 
+    @abstractmethod
+    def depth(self, X: float) -> float:
+        """Depth of the middle of the obstacle, or of the other rod, below a touching centre line, over the length."""
+
 
 @dataclass(frozen=True)
 class ObstacleGaps(GapsAlong):
@@ -129,6 +133,10 @@ class ObstacleGaps(GapsAlong):
         gap = distance.value - float(self.line.radius(np.array(X)))
         length = self.line.length
         return gap / length, (distance.slope - self.line.taper) / length, distance.bend / length
+
+    def depth(self, X: float) -> float:
+        """Radius of the section and of the bar or ball, over the length; infinite without a middle."""
+        return (float(self.line.radius(np.array(X))) + self.obstacle.thickness / 2) / self.line.length
 
 
 @dataclass(frozen=True)
@@ -160,6 +168,11 @@ class RodsGaps(GapsAlong):
         if bends[1, 1] > 0.0:
             bends[0, 0] -= bends[0, 1] ** 2 / bends[1, 1]
         return gap, float(slopes[0]), float(bends[0, 0])
+
+    def depth(self, X: float) -> float:
+        """Radii of both sections, over the length."""
+        radii = self.line.radius(np.array(X)) + self.other.radius(np.array(self.place(X)))
+        return float(radii) / self.line.length
 
     def between(self, X: float, other: float) -> tuple[float, FloatArray, FloatArray]:
         """Gap at a section of either rod, and its derivatives with both abscissae, shape (2,) and (2, 2)."""

@@ -204,6 +204,9 @@ def _polished(gaps: GapsAlong, start: float, spacing: float) -> float:
         reach /= 4
     least, slope, curvature = gaps.at(X)
     for _ in range(POLISHING):
+        # Beside a thin obstacle the square of the distance from its middle is a parabola, the distance is none.
+        to_middle = least + gaps.depth(X)
+        curvature += slope**2 / to_middle if to_middle > 0.0 else 0.0
         if curvature <= 0.0:
             return X
         closer = float(np.clip(X - slope / curvature, max(X - reach, 0.0), min(X + reach, TIP)))

@@ -386,7 +386,7 @@ def test_heavy_tapered_rod_on_a_table() -> None:
     check_forces_sum(tapered, np.array([0.0, 0.0, -1100.0 * 9.81 * volume]))
 
 
-@pytest.mark.parametrize("radius", [0.02, pytest.param(0.008, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("radius", [0.02, pytest.param(0.008, marks=pytest.mark.slow), 1e-4])
 def test_under_growing_loads_no_rod_passes_through_a_thin_bar(radius: float) -> None:
     """It comes to rest where the path of the push, which watches every margin, brings it."""
     bar = f"""

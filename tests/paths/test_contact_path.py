@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from rich.console import Console
 from scipy.optimize import brentq, fsolve
 
-from cosserat_casadi import build, discretise, follow, parse_scene, solve
+from cosserat_casadi import build, discretise, follow, parse_scene, scene_from_dict, solve
 from cosserat_casadi.cli.reports.path import print_path
 from cosserat_casadi.numerics.trace import PathOutcome
 from cosserat_casadi.paths.contact_path import ContactPath, follow_contact_path
@@ -206,6 +206,29 @@ def test_no_step_takes_a_rod_through_a_thin_wire() -> None:
     assert_allclose(path.smallest_eigenvalue[-1], path.solution(-1).smallest_eigenvalue, rtol=1e-9, atol=0)
 
 
+def wire_met_by_elastica(name: str, push: float, section: float, radius: float = 1e-4) -> dict[str, object]:
+    """A wire across a cantilever of length and stiffness one, which a tip force touches it with at a section."""
+    (curvature,) = root(lambda k: elastica_end(1.0, [0.0, 0.0, 0.0, k[0]], [0.0, -push], 1.0)[3:], [-push])
+    x, z, angle, _ = elastica_end(section, [0.0, 0.0, 0.0, curvature], [0.0, -push], 1.0)
+    middle = np.array([x + radius * np.sin(angle), z - radius * np.cos(angle)])
+    ends = {word: [middle[0], y, middle[1]] for word, y in (("from", -1.0), ("to", 1.0))}
+    return {"name": name, "kind": "capsule", "radius": radius, **ends}
+
+
+@pytest.mark.parametrize("push", [0.05, 0.3])
+def test_a_rod_touches_the_first_of_two_thin_wires(push: float) -> None:
+    """Steps are longer than the wires are thick: where one touches the rod, another one may be behind it already."""
+    wires = [wire_met_by_elastica("first", push, 0.55), wire_met_by_elastica("second", push + 0.01, 0.4)]
+    single = rod("planar", length=1.0, stiffness={"bending_y": 1.0}, base={"tangent": [1, 0, 0]})
+    tip = {"name": "push", "kind": "tip_wrench", "rod": "rod", "force": [0, 0, -1.0]}
+    table = {"schema": 1, "rods": [single], "loads": [tip], "obstacles": wires, "accuracy": {"modes": 5}}
+    path = follow(build(scene_from_dict(table)), "push.force", [0.0, 0.0, -1.0])
+    touch, *_ = path.events
+    assert path.converged and touch.kind == "touch" and touch.contact is not None
+    assert touch.contact.obstacle == "first"
+    assert_allclose([touch.factor, touch.contact.start], [push, 0.55], rtol=1e-6, atol=0)
+
+
 @pytest.mark.slow
 def test_without_contact_it_is_the_path_of_the_scene_without_obstacles() -> None:
     low = TABLE.replace("-0.08]", "-5.0]")
@@ -246,7 +269,7 @@ def test_a_report_fits_a_terminal_of_80_columns(lowered: ContactPath) -> None:
     console = Console(record=True, width=80)
     print_path(console, lowered, [])
     text = console.export_text()
-    assert "beyond it" in text and "x, m" in text
+    assert "after it" in text and "x, m" in text
     assert "…" not in text
 
 

@@ -26,6 +26,7 @@ from cosserat_casadi.equilibrium.contact.gaps import (
     body_gap,
     body_pairs,
     gap_along,
+    gap_at,
     inner_radius,
     pairs,
     rod_pairs,
@@ -81,7 +82,7 @@ CUSHION = 0.5
 """Width of the cushion between two rods, over the radius of the thinnest rod."""
 
 THINNEST_CUSHION = 0.01
-"""Least width of that, over the length of the longest rod."""
+"""Least width of that, and least radius of the cushion of a bar or ball, over the length of the longest rod."""
 
 LONG = 0.2
 """Length of a stretch of pressure above which a line of contact is tried before a point."""
@@ -165,6 +166,30 @@ def cushioned(scene: scenes.Scene, factor: float = 1.0) -> Model:
     return build(scene.model_copy(update=changes), discretisation)
 
 
+def _thickened(scene: scenes.Scene, values: Values) -> scenes.Scene:
+    """The scene with thicker bars and balls in place of thin ones, through whose cushions rods would cut.
+
+    An obstacle grows by half its distance from the unloaded rods and bodies at most, so that they stay outside it.
+    """
+    least = THINNEST_CUSHION * max(rod.length for rod in scene.rods)
+    if all(obstacle.thickness >= 2 * least for obstacle in scene.obstacles):
+        return scene
+    model = cushioned(scene)
+    rods = model.discrete.rods
+    unloaded = Barriers(model, model.pack(values)).unloaded
+    gaps = [(bar.name, rods[rod].length * gap_along(unloaded, rod, bar, DENSE).min()) for rod, bar in pairs(scene)]
+    gaps += [(bar.name, gap_at(bar, body, unloaded.body(body.name))) for body, bar in body_pairs(scene)]
+
+    def thick(obstacle: scenes.ObstacleRecord) -> scenes.ObstacleRecord:
+        if obstacle.thickness >= 2 * least:
+            return obstacle
+        apart = min((gap for name, gap in gaps if name == obstacle.name), default=0.0)
+        radius = min(least, (obstacle.thickness + max(apart, 0.0)) / 2)
+        return obstacle.model_copy(update={"radius": float(radius)})
+
+    return scene.model_copy(update={"obstacles": tuple(map(thick, scene.obstacles))})
+
+
 def _softened(contact: scenes.RodContact, scene: scenes.Scene, factor: float) -> scenes.RodContact:
     """A contact of rods with a cushion: so wide that few sections are enough, and as soft as the softest rod."""
     least_radius = min(section_radius(rod_properties(rod), DENSE).min() for rod in scene.rods)
@@ -232,6 +257,7 @@ def approach(scene: scenes.Scene, values: Values, progress: Progress | None = No
         progress: receives the share of the load path that is done.
     """
     settings = ContinuationSettings()
+    scene = _thickened(scene, values)
     found = _under_growing_loads(cushioned(scene), values, settings, progress)
     factor = HARDER
     while (
@@ -342,23 +368,26 @@ class Barriers:
     inputs: FloatArray
 
     @cached_property
+    def unloaded(self) -> Solution:
+        """The unloaded rods."""
+        return self._shape(self.model.unloaded())
+
+    @cached_property
     def watched(self) -> list[tuple[str, scenes.ObstacleRecord]]:
         """Pairs of a rod and an obstacle that it must not pass; a rod that begins inside is pushed out to any side."""
-        unloaded = self._shape(self.model.unloaded())
         return [
             (rod, obstacle)
             for rod, obstacle in pairs(self.model.scene)
-            if isfinite(obstacle.thickness) and gap_along(unloaded, rod, obstacle, DENSE).min() >= 0.0
+            if isfinite(obstacle.thickness) and gap_along(self.unloaded, rod, obstacle, DENSE).min() >= 0.0
         ]
 
     @cached_property
     def watched_bodies(self) -> list[tuple[scenes.Body, scenes.ObstacleRecord]]:
         """Pairs of a body and an obstacle that it must not pass."""
-        unloaded = self._shape(self.model.unloaded())
         return [
             (body, obstacle)
             for body, obstacle in body_pairs(self.model.scene)
-            if isfinite(obstacle.thickness) and body_gap(unloaded, body, obstacle) >= 0.0
+            if isfinite(obstacle.thickness) and body_gap(self.unloaded, body, obstacle) >= 0.0
         ]
 
     def are_between(self, before: FloatArray, after: FloatArray) -> bool:
