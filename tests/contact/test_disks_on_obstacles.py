@@ -285,7 +285,7 @@ def test_a_motion_of_disks_in_exact_contact_names_a_remedy(of_row: bool) -> None
     if not of_row:
         tables = json.loads(json.dumps(tables).replace("d[0]", "foot").replace("d[1]", "hand"))
     (problem,) = untouchable(build(scene_from_dict(tables)), Simulation(duration=1.0))
-    assert problem.problem.endswith("as they roll: d[0], d[1]" if of_row else "as they roll: foot, hand")
+    assert problem.problem.endswith("these are disks: d[0], d[1]" if of_row else "these are disks: foot, hand")
     assert ("width" if of_row else "balls") in problem.remedy.split(";")[0]
 
 

@@ -94,7 +94,7 @@ def test_a_motion_that_was_not_started_has_no_rows() -> None:
     assert not none.converged
     assert none.tip().position.shape == (0, 3)
     assert none.section(None, [0.2, 0.5]).quaternion.shape == (0, 2, 4)
-    with pytest.raises(ValueError, match="was not started"):
+    with pytest.raises(ValueError, match="did not start"):
         none.at(0.0)
 
 
