@@ -197,7 +197,7 @@ class ResolvedMotion:
         waves: whether sudden loads send waves along rods without damping.
         fronts: missing displacement at the fronts of these waves, over the length.
         step_tolerance: tolerance of a step, over the length; nan for steps of given size.
-        turn: bound on the largest turn of an element along the motion, rad.
+        turn: bound on the largest turn of an element along the motion, rad; 0 within one turn.
     """
 
     simulator: Simulator
@@ -819,10 +819,11 @@ def _simulator(search: _Search, model: Model, stage: str) -> Simulator:
 
 
 def _largest_turn(history: History, duration: float) -> float:
-    """Bound on the largest turn of an element along a motion, rad."""
+    """Bound on the largest turn of an element along a motion, rad; 0 within one turn, which any level sees."""
     discrete = history.model.discrete
     elements = kept_with(history.model, "_turned_elements", lambda: TurnedElements(Richer(discrete, discrete)))
-    return float(elements.turns_at(watched_states(history, duration).x).max())
+    turn = float(elements.turns_at(watched_states(history, duration).x).max())
+    return turn if modes_for_turn(turn) else 0.0
 
 
 def _uniform(scene: Scene, modes: int, turn: float = 0.0) -> dict[str, Discretisation]:

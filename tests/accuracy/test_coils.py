@@ -20,12 +20,13 @@ from cosserat_casadi import (
     simulate,
     solve,
 )
-from cosserat_casadi.accuracy.levels import nodes_for_turn, verified_nodes
+from cosserat_casadi.accuracy.levels import SPARE_NODES, nodes_for_turn, verified_nodes
 from cosserat_casadi.accuracy.refine import FINER_MODES
 from cosserat_casadi.control.inverse_levels import LevelsOfRods
 from cosserat_casadi.equilibrium.blindness import TurnedElements
 from cosserat_casadi.equilibrium.metrics import largest_turn, pose_distance
 from cosserat_casadi.model.discrete_scene import Richer
+from cosserat_casadi.model.discretise import nodes_for
 from cosserat_casadi.motion.motion_refinement import ResolvedMotion, _Search
 from tests.scenes import push, scene
 
@@ -158,6 +159,19 @@ def test_a_motion_of_a_coil_knows_its_error(accuracy: dict[str, Any]) -> None:
     apart = np.linalg.norm(motion.tip().position - reference.tip().position, axis=1).max() / (3 * PITCH)
     assert reference.error_estimate < 2e-3
     assert apart < motion.error_estimate
+
+
+def test_a_motion_within_one_turn_pays_for_no_turn() -> None:
+    """A rod that a force bends by two radians moves on the intervals that its modes ask for."""
+    rod = {"name": "rod", "length": 1.0, "strain": "planar", "damping": {"retardation_time": 0.1}}
+    rod |= {"stiffness": {"bending_y": 1.0}, "linear_density": 1.0, "base": {"position": [0, 0, 0]}}
+    bend = {"name": "bend", "kind": "tip_wrench", "rod": "rod", "force": [4.0, 0.0, 0.0]}
+    simulation = {"duration": 2.0, "start": "unloaded", "tolerance": 1e-3}
+    motion = simulate(scene(bend, rods=[rod], simulation=simulation))
+    assert motion.converged, motion.message
+    assert np.abs(motion.tip().position[:, 0]).max() > 0.8
+    chosen = motion.model.discretisation["rod"]
+    assert chosen.nodes == nodes_for(max(chosen.modes)) + SPARE_NODES
 
 
 @pytest.mark.slow
