@@ -28,8 +28,8 @@ LOOKS = 3
 OTHER_LOOKS = 17
 """Sections of the second rod that are looked at first."""
 
-TURNS = 7
-"""Steps of Newton's method: from a neighbour of the least section that is looked at, six of them reach rounding."""
+STEPS = 7
+"""Number of steps of Newton's method: from the neighbour of a place that is looked at, six of them reach rounding."""
 
 STRIDE = 0.1
 """Longest change of an abscissa in a step."""
@@ -48,8 +48,8 @@ class NearestPlaces:
     Attributes:
         system: the scene in symbols.
         rods: names of both rods.
-        ends: abscissae of the first rod between which its stretches are, base to tip.
-        number: of the two rods among all that touch: functions of generated code have different names.
+        ends: abscissae of the ends of the stretches of the first rod, base to tip.
+        number: number of the pair of rods, for different names of functions in generated code.
     """
 
     system: System
@@ -65,7 +65,7 @@ class NearestPlaces:
         series = [ca.repmat(ca.vec(self._series(rod)), 1, count) for rod in self.rods]
         given = [*series, ca.repmat(self._p, 1, count), bounds]
         found = self._search.map(count)(*given)
-        places: Matrix = self._turn(last=True).map(count)(*given, found)
+        places: Matrix = self._step(last=True).map(count)(*given, found)
         return places
 
     def _series(self, rod: str) -> Matrix:
@@ -87,7 +87,7 @@ class NearestPlaces:
         return [ca.MX.sym(name, size) for name, size in zip(("own", "other", "p", "bounds"), sizes, strict=True)]
 
     def _centre(self, k: int, X: Matrix) -> Matrix:
-        """Centre of a section of the k-th rod, 3×1, m, of the series in the symbols."""
+        """Centre of a section of the k-th rod by its series in symbols, 3×1, m."""
         grid = self.system.discrete.rods[self.rods[k]].grid
         series = ca.horzsplit(ca.reshape(self._arguments[k], 3, grid.size), grid.intervals + 1)
         parts = []
@@ -100,7 +100,7 @@ class NearestPlaces:
         radius: Matrix = RodSurface(self.system, self.rods[k]).radius(X)
         return radius
 
-    def _turn(self, *, last: bool) -> ca.Function:
+    def _step(self, *, last: bool) -> ca.Function:
         """(first series, second series, p, bounds, places) ↦ places after a step of Newton's method.
 
         The steps have the bends of half the squared distance, which serve far from the bottom too; the last one has
@@ -118,19 +118,19 @@ class NearestPlaces:
         )
         straight = ways.T @ ways / (distance * length)
         step = _bounded_step()(places, self._arguments[3], ca.gradient(gap, places), bends, straight)
-        turn = ca.Function(f"turn_{self.number}", [*self._arguments, places], ca.cse([step])).expand()
+        function = ca.Function(f"step_{self.number}", [*self._arguments, places], ca.cse([step])).expand()
         if last:
-            return turn
-        symbols = turn.sx_in()
-        return ca.Function(turn.name(), symbols, turn.call(symbols), KEPT)
+            return function
+        symbols = function.sx_in()
+        return ca.Function(function.name(), symbols, function.call(symbols), KEPT)
 
     @cached_property
     def _search(self) -> ca.Function:
         """(first series, second series, p, bounds) ↦ places before the last step, which has their derivatives."""
         places = self._first
-        turn = self._turn(last=False)
-        for _ in range(TURNS - 1):
-            places = turn(*self._arguments, places)
+        step = self._step(last=False)
+        for _ in range(STEPS - 1):
+            places = step(*self._arguments, places)
         # Steps before the last one do not change its derivatives.
         constant = {"is_diff_in": [False] * len(self._arguments), **KEPT}
         return ca.Function(f"search_{self.number}", self._arguments, [places], constant)

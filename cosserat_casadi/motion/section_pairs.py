@@ -44,7 +44,6 @@ from cosserat_casadi.equilibrium.contact.gaps import ball_radius, body_pairs, pa
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_from, surface
 from cosserat_casadi.loads.contact_layer import along_surface, weighted_way
 from cosserat_casadi.loads.obstacle_load import section_radii
-from cosserat_casadi.loads.rods_point import across
 from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
@@ -54,7 +53,7 @@ from cosserat_casadi.model.section_poses import interpolation_weights, section_w
 from cosserat_casadi.model.system import System
 from cosserat_casadi.motion.coincident_ends import watched_ends
 from cosserat_casadi.motion.nearest_places import NearestPlaces
-from cosserat_casadi.motion.surface_sliding import material_arm
+from cosserat_casadi.motion.surface_sliding import poses_apart, touching_point_of_rods
 
 SECTIONS = 8
 """Number of stretches of a rod, at whose ends are the sections that may touch an obstacle."""
@@ -260,10 +259,11 @@ class TouchingPairs:
         Parameters are appended to inputs, and then the places at which rods rub on rods.
         """
         written = self._written
-        places = self._place_symbols(tuple(touching for touching, _ in self._rubbing))
+        rubbing = [touching for touching, _ in self._rubbing]
+        places = self._place_symbols(rubbing)
         v, rate = ca.MX.sym("v", self.model.size), ca.MX.sym("rate", self.model.inputs.size)
         forces, ways = ca.MX.sym("forces", 1, self.count), ca.MX.sym("ways", 1, self.count)
-        placed = self._placed(tuple(touching for touching, _ in self._rubbing), places)
+        placed = self._placed(rubbing, places)
         poses = [self._poses(written.system, touching, at) for touching, at in placed]
         stacked = ca.vec(ca.horzcat(*poses))
         moved = ca.jtimes(stacked, written["x"], v) + ca.jtimes(stacked, written["inputs"], rate)
@@ -310,23 +310,14 @@ class TouchingPairs:
     def _drag_of_rods(self, touching: TouchingSections) -> ca.Function:
         """(poses, their rates, radii, m, force, N, creep, m/s) ↦ generalised friction on the entries of both, 24×1.
 
-        Both rods touch at the point that divides the way between their centres as their radii do; friction on both
-        acts there.
+        Friction on both rods acts at the point where they touch.
         """
         poses, rates, radii = ca.SX.sym("poses", 24), ca.SX.sym("rates", 24), ca.SX.sym("radii", 2)
         force, creep = ca.SX.sym("force"), ca.SX.sym("creep")
-        way = poses[:3] - poses[12:15]
-        normal, _ = across(way)
-        arm = -radii[0] / (radii[0] + radii[1]) * way
-        axes = [ca.reshape(poses[first : first + 9], 3, 3) for first in (3, 15)]
-        materials = [material_arm(axes[0], arm), material_arm(axes[1], way + arm)]
-        speeds = [
-            rates[first : first + 3] + ca.reshape(rates[first + 3 : first + 12], 3, 3) @ material
-            for first, material in zip((0, 12), materials, strict=True)
-        ]
-        slide = along_surface(speeds[0] - speeds[1], normal)
+        normal, arms, velocity = touching_point_of_rods(poses_apart(poses), poses_apart(rates), ca.vertsplit(radii))
+        slide = along_surface(velocity, normal)
         held = -force * touching.against.coefficients[0] * slide / ca.sqrt(ca.sumsqr(slide) + creep**2)
-        pulls = [ca.vertcat(pull, ca.vec(pull @ arm.T)) for pull, arm in zip((held, -held), materials, strict=True)]
+        pulls = [ca.vertcat(pull, ca.vec(pull @ arm.T)) for pull, arm in zip((held, -held), arms, strict=True)]
         return ca.Function(
             "drag_of_rods", [poses, rates, radii, force, creep], [ca.cse(ca.densify(ca.vertcat(*pulls)))]
         )
@@ -334,7 +325,7 @@ class TouchingPairs:
     def _poses(self, system: System, touching: TouchingSections, places: Matrix | None) -> Matrix:
         """Positions of sections, or of a body, and their rotations, in the axes of the obstacle, 12×k.
 
-        Of two rods those of both at their places, 24×k.
+        For two rods: positions and rotations of the sections of both at their places, in world axes, 24×k.
         """
         if places is not None:
             return ca.vertcat(*[ca.vertcat(*sections) for sections in self._rods_in_world(system, touching, places)])
@@ -397,7 +388,7 @@ class TouchingPairs:
     def _placed(
         touching: Sequence[TouchingSections], places: Sequence[Matrix]
     ) -> list[tuple[TouchingSections, Matrix | None]]:
-        """Each with its columns of the places of stretches, which may be none; None for sections of an obstacle."""
+        """Sections and stretches, each with its columns of all places; None for sections that may touch an obstacle."""
         placed: list[tuple[TouchingSections, Matrix | None]] = []
         first = 0
         for each in touching:
@@ -477,7 +468,7 @@ class TouchingPairs:
     def _force_units(self, touching: TouchingSections) -> FloatArray:
         """Force, N, that moves each section by one length within a stage, in the direction in which it yields most.
 
-        The middle of a stretch moves, together with that of the stretch of the other rod that yields most.
+        For a stretch the middle moves, and so does the middle of the stretch of the other rod that yields most.
         """
         if touching.other is not None:
             middle = [(start + end) / 2 for start, end in pairwise(touching.places)]

@@ -11,6 +11,7 @@ which conserves their total momentum and angular momentum.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -25,6 +26,9 @@ from cosserat_casadi.motion.contact_gap import Facing
 from cosserat_casadi.motion.facings import facings
 from cosserat_casadi.motion.moving_points import in_stacked_inputs, stacked_size
 from cosserat_casadi.motion.rods_facing import RodsFacing
+
+Pose = tuple[Matrix, Matrix]
+"""Centre of a section, 3×1, m, and its rotation, 3×3; or their rates."""
 
 
 @dataclass(frozen=True)
@@ -69,15 +73,11 @@ class SurfaceSliding:
         sides = [facing, facing.other] if isinstance(facing, RodsFacing) else [facing]
         stacked, rates = ca.SX.sym("poses", 12 * len(sides)), ca.SX.sym("rates", 12 * len(sides))
         abscissae, axis = ca.SX.sym("X", len(sides)), ca.SX.sym("axis", 3)
-        poses, moved = (list(map(_apart, ca.vertsplit(each, 12))) for each in (stacked, rates))
+        poses, moved = (poses_apart(each) for each in (stacked, rates))
         radii = [_radius(side, X) for side, X in zip(sides, ca.vertsplit(abscissae), strict=True)]
         centre, rotation = poses[0]
         if len(sides) == 2:
-            way = centre - poses[1][0]
-            normal = way / ca.sqrt(ca.sumsqr(way))
-            arm = -radii[0] / (radii[0] + radii[1]) * way
-            velocity = _velocity(moved[0], material_arm(rotation, arm))
-            velocity -= _velocity(moved[1], material_arm(poses[1][1], way + arm))
+            normal, _, velocity = touching_point_of_rods(poses, moved, radii)
         else:
             _, normal, _ = surface(facing.obstacle)(centre)
             velocity = _velocity(moved[0], rotation.T @ (-radii[0] * normal))
@@ -202,7 +202,30 @@ def _radius(side: Facing, X: Matrix) -> Matrix:
     return base + X * (tip - base)
 
 
-def material_arm(rotation: Matrix, arm: Matrix) -> Matrix:
+def touching_point_of_rods(
+    poses: Sequence[Pose], rates: Sequence[Pose], radii: Sequence[Matrix]
+) -> tuple[Matrix, list[Matrix], Matrix]:
+    """Find the point at which two sections touch, and the velocity of the first rod past the second one there.
+
+    The point divides the way between the centres as the radii do.
+
+    Args:
+        poses: centres, m, and rotations of both sections.
+        rates: rates of the poses.
+        radii: radii of both sections, m.
+
+    Returns:
+        normal, from the second rod to the first; arms from each centre to the point, along the directors of its
+        section, m; velocity, m/s. All are 3×1.
+    """
+    way = poses[0][0] - poses[1][0]
+    arm = -radii[0] / (radii[0] + radii[1]) * way
+    arms = [_material_arm(poses[0][1], arm), _material_arm(poses[1][1], way + arm)]
+    velocity = _velocity(rates[0], arms[0]) - _velocity(rates[1], arms[1])
+    return way / ca.sqrt(ca.sumsqr(way)), arms, velocity
+
+
+def _material_arm(rotation: Matrix, arm: Matrix) -> Matrix:
     """Components of an arm along the directors, 3×1, m.
 
     Interpolated directors are orthogonal only up to the error of polynomials, so they are inverted: otherwise forces at
@@ -223,12 +246,12 @@ def _pose(facing: Facing, system: System, weights: Matrix) -> Matrix:
     return ca.vertcat(seen, ca.vec(system.turned_to(facing.carrier, ca.horzcat(*directors))))
 
 
-def _apart(pose: Matrix) -> tuple[Matrix, Matrix]:
-    """Centre, 3×1, and rotation, 3×3, of a stacked pose; or their rates."""
-    return pose[:3], ca.reshape(pose[3:], 3, 3)
+def poses_apart(stacked: Matrix) -> list[Pose]:
+    """Centre, 3×1, and rotation, 3×3, of each of s stacked poses, 12s×1; or their rates."""
+    return [(pose[:3], ca.reshape(pose[3:], 3, 3)) for pose in ca.vertsplit(stacked, 12)]
 
 
-def _velocity(rates: tuple[Matrix, Matrix], arm: Matrix) -> Matrix:
+def _velocity(rates: Pose, arm: Matrix) -> Matrix:
     """Velocity of a material point at an arm from the centre of its section, along the directors, 3×1, m/s."""
     centre, rotation = rates
     return centre + rotation @ arm

@@ -110,14 +110,25 @@ def _equilibrium(model: Model, inputs: FloatArray, before: list[Solution], longe
     return found if found.converged and near and not passes else None
 
 
+def foretold_increment(longest: float, way: float, last: float) -> float:
+    """Increment of the factor in which the shape, at its last rate of change, changes by the longest step.
+
+    Args:
+        longest: the longest change of the shape.
+        way: change of the shape in the last increment, in equal units.
+        last: the last increment of the factor.
+    """
+    return longest * last / way if way > 0.0 else inf
+
+
 def _foretold(points: list[_Point], longest: float) -> float:
-    """Increment of the factor in which the shape, at its last rate of change, changes by the longest step."""
+    """The :func:`foretold_increment` after the last two points; infinite for one point."""
     if len(points) < 2:
         return inf
     before, last = points[-2:]
     places = last.solution.model.discrete.unknowns.differential
     way = float(np.linalg.norm((last.solution.x - before.solution.x)[places]))
-    return longest * (last.factor - before.factor) / way if way > 0.0 else inf
+    return foretold_increment(longest, way, last.factor - before.factor)
 
 
 def follow_friction_path(

@@ -30,7 +30,7 @@ from cosserat_casadi.paths.contact_curve import Arrangement
 from cosserat_casadi.paths.contact_path import ContactPath, Guard, Travel, beginning, path_contact, record
 from cosserat_casadi.paths.contact_transitions import ArrangementEntry
 from cosserat_casadi.paths.equilibrium_path import InputChange, PathContact, PathEvent, path_along
-from cosserat_casadi.paths.friction_path import SHORTEST, WITHIN
+from cosserat_casadi.paths.friction_path import SHORTEST, WITHIN, foretold_increment
 from cosserat_casadi.paths.margins import Watch
 from cosserat_casadi.paths.rubbing_equations import (
     AXES,
@@ -410,12 +410,12 @@ class RubbingTravel(Travel):
         return float(np.linalg.norm((after - before)[: model.size][model.discrete.unknowns.differential]))
 
     def _foretold(self, points: list[ArcPoint]) -> float:
-        """Increment of the factor in which the shape, at its last rate of change, changes by the longest step."""
+        """The :func:`foretold_increment` after the last two points; infinite for one point."""
         if len(points) < 2:
             return inf
         before, last = points[-2:]
         way = self._way(before.x, last.x)
-        return self.settings.longest * (last.load_factor - before.load_factor) / way if way > 0.0 else inf
+        return foretold_increment(self.settings.longest, way, last.load_factor - before.load_factor)
 
     def _broken_loose(self, arc: Arc) -> tuple[int, ArcPoint] | None:
         """The first contact that breaks loose in an increment, by its index, and the point where it does."""

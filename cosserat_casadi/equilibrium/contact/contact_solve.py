@@ -43,6 +43,7 @@ from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.numerics.newton import Equations, NewtonResult, NewtonSettings, newton
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress
+from cosserat_casadi.numerics.trace import GROWTH
 from cosserat_casadi.scene.load_records import LoadRecord
 from cosserat_casadi.scene.obstacle_records import ObstacleRecord
 
@@ -126,7 +127,7 @@ def solve_contact(
         unmet_before=unmet_before,
     )
     if not cushioned.converged and not holds and bare.rods_touch_exactly:
-        found = _under_growing_loads(settling, cushioned)
+        found = _loads_grown_in_contact(settling, cushioned)
         holds = found is not None
     if not cushioned.converged and not holds:
         return replace(cushioned, iterations=settling.iterations)
@@ -200,7 +201,7 @@ def stays_unmet(found: ContactEquilibrium, before: float, tolerance: float) -> b
     return found.unmet() > max(tolerance, STAYING * before)
 
 
-def _under_growing_loads(settling: Settling, cushioned: Solution) -> ContactEquilibrium | None:
+def _loads_grown_in_contact(settling: Settling, cushioned: Solution) -> ContactEquilibrium | None:
     """The equilibrium with contacts that hold, at the end of steps in which the loads of the scene grow.
 
     On cushions rods that cross slide over each other in jerks, from one section to the next, and off each other's ends;
@@ -215,7 +216,8 @@ def _under_growing_loads(settling: Settling, cushioned: Solution) -> ContactEqui
     owners = {record.name for record in (*scene.loads, *scene.actuators)}
     is_load = np.zeros(layout.size, dtype=bool)
     for entry, span in layout:
-        is_load[span] = entry.owner in owners
+        # A rod and a load may share a name.
+        is_load[span] = entry.owner in owners and not entry.of_rod
 
     def at(share: float) -> Settling:
         scaled = np.where(is_load, share * settling.given, settling.given)
@@ -225,19 +227,19 @@ def _under_growing_loads(settling: Settling, cushioned: Solution) -> ContactEqui
     start = approach(scene, layout.unpack(at(share).given))
     if not start.converged:
         return None
-    found = settled_near(at(share), start, first_state(start))
+    last = settled_near(at(share), start, first_state(start))
     step = LONGEST_SHARE / 4
-    while found is not None and share < 1.0 and step > SHORTEST_SHARE:
+    while last is not None and share < 1.0 and step > SHORTEST_SHARE:
         target = min(share + step, 1.0)
         search = at(target)
-        next_found = settled_near(search, found.solution)
+        reached = settled_near(search, last.solution)
         settling.iterations += search.iterations
-        if next_found is None:
+        if reached is None:
             step /= 2
-            continue
-        found, share = next_found, target
-        step = min(1.5 * step, LONGEST_SHARE)
-    return found if share == 1.0 else None
+        else:
+            last, share = reached, target
+            step = min(GROWTH * step, LONGEST_SHARE)
+    return last if share == 1.0 else None
 
 
 def _guesses(cushioned: Solution, first: ContactState) -> list[tuple[ContactState, Solution]]:

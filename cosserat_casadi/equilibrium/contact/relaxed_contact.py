@@ -50,7 +50,7 @@ from cosserat_casadi.equilibrium.contact.shape_projection import projected
 from cosserat_casadi.equilibrium.load_path import column
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError, refuse
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.maths.typing import Columns, FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.inputs import InputLayout
 from cosserat_casadi.numerics.newton import Equations, NewtonSettings, newton
@@ -119,7 +119,7 @@ class RelaxedContact:
         """All places of the state."""
         places = np.empty(len(self._sought))
         numbers = z[len(z) - int(self._sought.sum()) :]
-        places[self._sought] = (1 + numbers / np.sqrt(1 + numbers**2)) / 2
+        places[self._sought] = _abscissae(numbers)
         places[~self._sought] = p[1:]
         return places
 
@@ -336,13 +336,18 @@ class _Written:
         new_places = fixed
         if sought:
             new_places = ca.MX(places.shape[0], 1)
-            new_places[sought], new_places[given] = (1 + numbers / ca.sqrt(1 + numbers**2)) / 2, fixed
+            new_places[sought], new_places[given] = _abscissae(numbers), fixed
             by_numbers = 1 / (2 * ca.sqrt(1 + numbers**2) ** 3)
             expressions[1] = expressions[1] @ ca.diag(ca.vertcat(ca.DM.ones(size + count), by_numbers))
         old = [x, forces, smoothing, places]
         new = [own, pushes, new_smoothing, new_places]
         residual, jacobian, *at = ca.graph_substitute(expressions, old, new)
         return cls(z, written.given, p, at, residual, jacobian)
+
+
+def _abscissae(numbers: Columns) -> Columns:
+    """Abscissae s = (1 + y/√(1 + y²))/2 of numbers y of any size."""
+    return (1 + numbers / (1 + numbers**2) ** 0.5) / 2
 
 
 def sought_places(state: ContactState) -> npt.NDArray[np.bool_]:
