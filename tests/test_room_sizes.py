@@ -17,7 +17,7 @@ LINES = {
     "beside rooms": 625,
     "cli": 4_410,
     "codegen": 11_755,
-    "compiling": 5_210,
+    "compiling": 5_215,
     "constraints": 1_030,
     "control": 2_805,
     "environments": 330,

@@ -113,9 +113,15 @@ def kept_file(folder: Path, stem: str, ending: str = LIBRARY) -> Path | None:
     Returns:
         The file; None if the folder has no such file.
     """
-    for file in sorted(folder.glob(f"{stem}-*{ending}")):
+    names = list[str]()
+    # The folder may be missing, or not ours to read.
+    # Names are compared as texts: a pattern takes milliseconds in a folder of thousands of files.
+    with suppress(OSError), os.scandir(folder) as entries:
+        names = [entry.name for entry in entries if entry.name.startswith(f"{stem}-") and entry.name.endswith(ending)]
+    for name in sorted(names):
+        file = folder / name
         try:
-            if file.name == file_name(stem, file.read_bytes(), ending):
+            if name == file_name(stem, file.read_bytes(), ending):
                 return file
             file.unlink()
         except OSError:
