@@ -27,7 +27,7 @@ LINES = {
     "loads": 2_365,
     "maths": 2_595,
     "mjcf": 1_050,
-    "model": 11_960,
+    "model": 11_980,
     "motion": 15_850,
     "numerics": 5_385,
     "obstacles": 415,

@@ -17,7 +17,7 @@ import numpy.typing as npt
 from cosserat_casadi.maths.grid import gauss_legendre
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.discrete_scene import DiscreteScene, Richer
-from cosserat_casadi.model.required_modes import unloaded_turns
+from cosserat_casadi.model.element_ends import unloaded_turns
 
 WHOLE_TURN = 2 * np.pi
 """Turn of an element, rad, up to which it has no whole wave that modes could miss."""

@@ -1,5 +1,7 @@
 """Ends of the elements of rods: a load, an actuator, a body, a disk or a carried rod makes a jump there.
 
+A rod that turns many times is cut between these places too, since an element resolves only so many turns.
+
 A parameter may move such a place. The elements that end there move with it: their number, modes and nodes stay those
 of the scene's own numbers, so that the order of the places along a rod must stay as well.
 """
@@ -8,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 
 import casadi as ca
@@ -16,10 +19,12 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.loads.rods_point import RodsPoint
-from cosserat_casadi.maths.numbers import Scalar, as_vector, is_symbolic
+from cosserat_casadi.maths.grid import gauss_legendre
+from cosserat_casadi.maths.numbers import Scalar, as_vector, is_symbolic, known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.contact_layers import joined_ends, layer_ends
 from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene.load_records import LoadRecord
 
@@ -32,6 +37,12 @@ CLOSEST = 1e-13
 
 At 1e-12 a rod with a load at each of two places is still solved to its tolerance.
 """
+
+LONGEST_TURN = 40 * np.pi
+"""Largest angle, rad, through which sections turn along an element of an unloaded rod."""
+
+SECTIONS_OF_TURN = 64
+"""Sections of an element at which its unloaded curvature is summed."""
 
 
 def places_on(scene: scenes.Scene, rod: str) -> list[Scalar]:
@@ -54,10 +65,39 @@ def places_on(scene: scenes.Scene, rod: str) -> list[Scalar]:
 
 
 def element_ends(scene: scenes.Scene, rod: str) -> tuple[float, ...]:
-    """Abscissae of the element ends of a rod: its ends, the places on it, and the ends that contact asks for."""
+    """Abscissae of the element ends of a rod: its ends, the places on it, and the ends for contact and for coils."""
     asked_for = tuple(sorted({0.0, 1.0, *map(float, places_on(scene, rod))}))
     (record,) = [record for record in scene.rods if record.name == rod]
-    return joined_ends(asked_for, layer_ends(scene, record))
+    return _cut_coils(record, joined_ends(asked_for, layer_ends(scene, record)))
+
+
+def _cut_coils(record: scenes.Rod, ends: tuple[float, ...]) -> tuple[float, ...]:
+    """Element ends with elements halved until none of the unloaded rod turns more than LONGEST_TURN."""
+    turns = unloaded_turns(record, ends)
+    if max(turns) <= LONGEST_TURN:
+        return ends
+    halves = [
+        (start + end) / 2 for (start, end), turn in zip(pairwise(ends), turns, strict=True) if turn > LONGEST_TURN
+    ]
+    return _cut_coils(record, tuple(sorted([*ends, *halves])))
+
+
+@lru_cache(maxsize=64)
+def unloaded_turns(record: scenes.Rod, breaks: tuple[float, ...]) -> tuple[float, ...]:
+    """Angle through which sections of an unloaded rod turn along each of its elements, summed, rad.
+
+    Args:
+        record: the rod, whose curvature is numbers.
+        breaks: ends of its elements.
+    """
+    properties = rod_properties(record)
+    points, weights = gauss_legendre(SECTIONS_OF_TURN)
+    turns = []
+    for start, end in pairwise(breaks):
+        X = start + (end - start) * (points + 1) / 2
+        curvature = np.linalg.norm(known(properties.intrinsic_curvature(X)), axis=1)
+        turns.append(properties.length * (end - start) / 2 * float(weights @ curvature))
+    return tuple(turns)
 
 
 def check_places(rod: str, ends: Sequence[float]) -> None:

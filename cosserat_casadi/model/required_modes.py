@@ -10,7 +10,6 @@ coefficients have decayed can be a reference solution (docs/theory.md, section 1
 from __future__ import annotations
 
 from functools import lru_cache
-from itertools import pairwise
 from math import ceil
 
 import casadi as ca
@@ -19,10 +18,9 @@ import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.actuators.routing import holes
-from cosserat_casadi.maths.grid import gauss_legendre
 from cosserat_casadi.maths.numbers import as_vector, known
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.element_ends import element_ends
+from cosserat_casadi.model.element_ends import element_ends, unloaded_turns
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.rod.discretisation import Discretisation
@@ -37,9 +35,6 @@ FAINT = 1e-3
 
 BEYOND = 2
 """Modes beyond a signal's degree, whose decay shows how fast the remaining ones converge."""
-
-SECTIONS_OF_TURN = 64
-"""Sections of an element at which its unloaded curvature is summed."""
 
 SLOW_MODES = 7
 """Modes that resolve any slowly varying signal, whose square has few modes as well."""
@@ -164,24 +159,6 @@ def unloaded_turn(scene: scenes.Scene) -> float:
 def _turn_of_rod(scene: scenes.Scene, record: scenes.Rod) -> float:
     """Largest angle through which sections turn along an element of one unloaded rod, summed, rad."""
     return max(unloaded_turns(record, element_ends(scene, record.name)))
-
-
-@lru_cache(maxsize=64)
-def unloaded_turns(record: scenes.Rod, breaks: tuple[float, ...]) -> tuple[float, ...]:
-    """Angle through which sections of an unloaded rod turn along each of its elements, summed, rad.
-
-    Args:
-        record: the rod, whose curvature is numbers.
-        breaks: ends of its elements.
-    """
-    properties = rod_properties(record)
-    points, weights = gauss_legendre(SECTIONS_OF_TURN)
-    turns = []
-    for start, end in pairwise(breaks):
-        X = start + (end - start) * (points + 1) / 2
-        curvature = np.linalg.norm(known(properties.intrinsic_curvature(X)), axis=1)
-        turns.append(properties.length * (end - start) / 2 * float(weights @ curvature))
-    return tuple(turns)
 
 
 def _series_degree(component: npt.ArrayLike) -> int:
