@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.relaxing_rows import BranchRows
+from cosserat_casadi.numerics.neutral import kept_by
 
 DEPENDENT = 1e-9
 """Singular value of G, over the largest one, below which a constraint is void or redundant.
@@ -119,10 +120,7 @@ class SmallMotions:
         """Orthonormal basis Z of the motions that the constraints admit, in scaled coordinates, shape (n, k)."""
         if not len(self.constraints):
             return np.eye(self.moving.size)
-        _, singular, rows = np.linalg.svd(self.constraints)
-        independent = singular > DEPENDENT * singular.max(initial=0.0)
-        rank = int(np.sum(independent))
-        return np.asarray(rows[rank:].T)
+        return kept_by(self.constraints, DEPENDENT)
 
     def projected(self, rows: FloatArray) -> FloatArray:
         """Project rows of the moving coordinates, shape (n, j), on the free coordinates z, shape (k, j)."""
