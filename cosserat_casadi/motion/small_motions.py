@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.relaxing_rows import BranchRows
 from cosserat_casadi.numerics.neutral import kept_by
 
@@ -168,3 +169,14 @@ class SmallMotions:
         rows = self.moving_rows(matrix)[:, self.moving]
         scaled = rows / self.roots
         return self.projected(scaled @ self.basis)
+
+
+def quaternion_growth(model: Model, x: FloatArray) -> FloatArray:
+    """Gradients of the norms of the quaternions of floating frames, which no mechanics sees, shape (frames, size)."""
+    discrete = model.discrete
+    gradients = np.zeros((len(discrete.frames), model.size))
+    for row, (name, frame) in zip(gradients, discrete.frames.items(), strict=True):
+        entries = discrete.deviation(name)
+        # Of the seven unknowns of a frame the last four are what its quaternion differs by from that at the start.
+        row[entries][3:] = frame.start.quaternion + x[entries][3:]
+    return gradients

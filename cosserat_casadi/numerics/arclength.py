@@ -270,18 +270,11 @@ def tangent_along(derivative: FloatArray, direction: FloatArray, singular: float
     Returns:
         the tangent, shape (n + 1,); None if a number is not finite, or the direction is orthogonal to the null space.
     """
-    basis = null_space(derivative, singular)
-    if basis is None:
+    if not np.all(np.isfinite(derivative)):
         return None
+    basis = kept_by(derivative, singular)
     projected = basis @ (basis.T @ direction)
     length = float(np.linalg.norm(projected))
     if not length > 0.0:
         return None
     return projected / length
-
-
-def null_space(derivative: FloatArray, singular: float = SINGULAR) -> FloatArray | None:
-    """Orthonormal basis of the null space of ∂g/∂y up to rounding, shape (n + 1, k) with k ≥ 1; None if not finite."""
-    if not np.all(np.isfinite(derivative)):
-        return None
-    return kept_by(derivative, singular)
