@@ -60,7 +60,8 @@ def load_path(model: Model, inputs: FloatArray, p: FloatArray | None = None) -> 
     if tangent is not None:
         tangent = without_rounding(tangent, NOISE)
     # The load factor is t itself.
-    path = _path(model, lambda load_factor: (*given, load_factor), rate, unloaded)
+    functions = (model.path_residual, model.path_jacobian)
+    path = _path(model, functions, lambda load_factor: (*given, load_factor), rate, unloaded)
     return replace(path, tangent=tangent, first_step=first_step(model))
 
 
@@ -108,18 +109,19 @@ def input_path(
             dg_dt = dg_dt + column(model.parameter_jacobian(x, *arguments) @ parameter_change)
         return dg_dt
 
-    return _path(model, lambda t: (*arguments_at(t), load_factor), rate, start)
+    functions = (model.path_residual, model.path_jacobian)
+    return _path(model, functions, lambda t: (*arguments_at(t), load_factor), rate, start)
 
 
 def _path(
     model: SystemFunctions,
+    functions: tuple[ca.Function, ca.Function],
     arguments_at: Callable[[float], tuple[FloatArray | float, ...]],
     rate: Callable[[FloatArray, float], FloatArray],
     start: FloatArray,
 ) -> Path:
-    """The path on which inputs, parameters and the load factor are functions of t."""
-    path_residual = model.path_residual
-    path_jacobian = model.path_jacobian
+    """The path on which the arguments of a model's functions, ``path_residual`` and ``path_jacobian``, follow t."""
+    path_residual, path_jacobian = functions
 
     def residual(x: FloatArray, t: float) -> FloatArray:
         return column(path_residual(x, *arguments_at(t)))

@@ -198,7 +198,7 @@ def _value(kind: Any, data: Any) -> Any:
     if origin in (Union, UnionType):
         if data is None:
             return None
-        (member,) = (one for one in arguments if one is not NoneType and is_dataclass(one) == isinstance(data, dict))
+        (member,) = (one for one in arguments if one is not NoneType)
         return _value(member, data)
     if origin is np.ndarray:
         return _array(data)
