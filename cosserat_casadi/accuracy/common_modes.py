@@ -422,11 +422,7 @@ class _Lack:
     def _left_by(self, chosen: Chosen) -> FloatArray:
         """The missing coordinates, with zeros for modes of a discretisation, shape (missing,)."""
         richer = self.solution.model.discrete.richer
-        has = np.zeros(richer.discrete.size, dtype=bool)
-        for name, rod in richer.discrete.rods.items():
-            first = richer.discrete.unknowns.strain(name).start
-            for (component, columns), modes in zip(rod.columns.items(), chosen[name].modes, strict=True):
-                has[first + columns.start : first + columns.stop] = rod.degrees(component) < modes
+        has = richer.discrete.existing({name: own.modes for name, own in chosen.items()})
         return np.where(has[~richer.known], 0.0, self.missing)
 
     def _change(self, missing: FloatArray) -> float:

@@ -94,23 +94,7 @@ class Preview:
 
     def kept(self, modes: Modes) -> Mask:
         """Whether each unknown of the reference exists with these modes, shape (n,); multipliers always do."""
-        discrete = self.model.discrete
-        mask = np.ones(self.model.size, dtype=bool)
-        for name, discrete_rod in discrete.rods.items():
-            first = discrete.unknowns.strain(name).start
-            counts = zip(
-                discrete_rod.columns.values(),
-                discrete_rod.discretisation.modes,
-                modes[name],
-                strict=True,
-            )
-            for columns, available, kept_count in counts:
-                # Polynomials are sorted by degree, element after element.
-                kept = np.arange(available) < kept_count
-                start = first + columns.start
-                stop = first + columns.stop
-                mask[start:stop] = np.tile(kept, discrete_rod.grid.elements)
-        return mask
+        return self.model.discrete.existing(modes)
 
     def with_modes(self, modes: Modes) -> FloatArray:
         """Unknowns of the equilibrium with fewer modes on the reference's grid, shape (n,), zero where dropped."""

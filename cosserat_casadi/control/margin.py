@@ -23,6 +23,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.motion.small_motions import quaternion_growth
 
 WIDTH = 0.02
 """Width w of the soft minimum."""
@@ -112,17 +113,10 @@ def _bordered(model: Model, given: list[Matrix]) -> Matrix:
 
 def _quaternion_growth(model: Model, x: Matrix) -> Matrix:
     """Variation of the norm of each floating frame's quaternion, which moves nothing and is excluded, k×size."""
-    discrete = model.discrete
-    rows = []
-    for name, frame in discrete.frames.items():
-        frame_slice = discrete.deviation(name)
-        # A frame has 7 unknowns: three of its position, then the change of its quaternion since the start.
-        quaternion = ca.DM(frame.start.quaternion) + x[frame_slice][3:]
-        before = ca.MX(1, frame_slice.start + 3)
-        after = ca.MX(1, model.size - frame_slice.stop)
-        rows.append(ca.horzcat(before, quaternion.T, after))
-    # Zero rows by the number of unknowns where no frame floats.
-    return ca.vertcat(ca.MX(0, model.size), *rows)
+    at_start = quaternion_growth(model, np.zeros(model.size))
+    # The growth is affine in x, each entry in its own unknown.
+    slopes = quaternion_growth(model, np.ones(model.size)) - at_start
+    return ca.DM(at_start) + ca.DM(slopes) * ca.repmat(x.T, len(slopes), 1)
 
 
 def _elastic(model: Model) -> FloatArray:

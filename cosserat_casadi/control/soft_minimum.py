@@ -19,6 +19,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.neutral import kept_by
 
 RANK = 1e-12
 """Singular value of the constraints, over the largest one, below which it counts as zero."""
@@ -284,10 +285,7 @@ def _on_the_null_space(
     measure: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
     """Eigenvalues of K against M where A v = 0, ascending, and their vectors, n×k, with vᵀ M v = 1."""
-    _, singular, basis = np.linalg.svd(constraints)
-    largest = singular.max(initial=0.0)
-    rank = int(np.sum(singular > RANK * largest))
-    null_space = basis[rank:].T
+    null_space = kept_by(constraints, RANK)
     # M = L Lᵀ on the null space: its vectors times L⁻ᵀ are M-orthonormal.
     cholesky = np.linalg.cholesky(null_space.T @ measure @ null_space)
     orthonormal = null_space @ np.linalg.inv(cholesky).T

@@ -58,7 +58,7 @@ class TurnedElements:
         """Root mean square of the turn of its element by a unit of each unknown, shape (n,), rad; 0 without one."""
         turns = np.zeros(self.richer.coarse.size)
         for name, rod in self.richer.coarse.nominal.rods.items():
-            first = self.richer.coarse.unknowns.strain(name).start
+            of_rod = turns[self.richer.coarse.unknowns.strain(name)]
             points, weights = gauss_legendre(max(rod.discretisation.modes) + 1)
             breaks = np.asarray(rod.discretisation.breaks)
             widths = np.diff(breaks)
@@ -68,8 +68,7 @@ class TurnedElements:
             for component in rod.angular:
                 by_unit = shares[:, None] * rod.shape_functions(component, places, element)
                 squares = (np.tile(weights, len(widths))[:, None] / 2 * by_unit**2).sum(axis=0)
-                columns = rod.columns[component]
-                turns[first + columns.start : first + columns.stop] = np.sqrt(squares)
+                of_rod[rod.columns[component]] = np.sqrt(squares)
         return turns
 
     @cached_property
@@ -83,9 +82,9 @@ class TurnedElements:
         discrete = self.richer.discrete
         modes = np.zeros(discrete.size, dtype=np.int64)
         for name, rod in discrete.rods.items():
-            first = discrete.unknowns.strain(name).start
+            of_rod = modes[discrete.unknowns.strain(name)]
             for columns, count in zip(rod.columns.values(), rod.discretisation.modes, strict=True):
-                modes[first + columns.start : first + columns.stop] = count
+                of_rod[columns] = count
         return modes[~self.richer.known]
 
     def turns_at(self, x: FloatArray) -> FloatArray:
@@ -117,10 +116,9 @@ def _elements(discrete: DiscreteScene) -> Indices:
     elements = np.full(discrete.size, -1)
     before = 0
     for name, rod in discrete.rods.items():
-        first = discrete.unknowns.strain(name).start
+        of_rod = elements[discrete.unknowns.strain(name)]
         count = rod.discretisation.elements
         for columns in rod.columns.values():
-            own = before + np.repeat(np.arange(count), (columns.stop - columns.start) // count)
-            elements[first + columns.start : first + columns.stop] = own
+            of_rod[columns] = before + np.repeat(np.arange(count), (columns.stop - columns.start) // count)
         before += count
     return elements

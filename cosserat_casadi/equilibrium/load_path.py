@@ -5,6 +5,7 @@ See docs/theory.md, section 9; section 8 for how constraints yield on the way.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import casadi as ca
@@ -44,18 +45,7 @@ def load_path(model: Model, inputs: FloatArray, p: FloatArray | None = None) -> 
     """
     no_change = np.zeros(model.inputs.size)
     given = (inputs,) if p is None else (inputs, p)
-    path_residual = model.path_residual
-    path_jacobian = model.path_jacobian
     path_rate = model.path_rate
-
-    # The load factor is t itself.
-    def residual(x: FloatArray, load_factor: float) -> FloatArray:
-        g = path_residual(x, *given, load_factor)
-        return column(g)
-
-    def jacobian(x: FloatArray, load_factor: float) -> Jacobian:
-        sparse = path_jacobian(x, *given, load_factor)
-        return _solvable(model, sparse)
 
     def rate(x: FloatArray, load_factor: float) -> FloatArray:
         load_factor_rate = 1.0
@@ -65,19 +55,14 @@ def load_path(model: Model, inputs: FloatArray, p: FloatArray | None = None) -> 
     # Model.path_tangent, the tangent as a function of the inputs, takes as long to write as many a solve. If the
     # unloaded stiffness is singular, the path starts with Newton's steps.
     unloaded = model.unloaded()
-    stiffness = path_jacobian(unloaded, *given, 0.0).full()
+    stiffness = model.path_jacobian(unloaded, *given, 0.0).full()
     tangent = solved(stiffness, -rate(unloaded, 0.0))
     if tangent is not None:
         tangent = without_rounding(tangent, NOISE)
-    return Path(
-        residual,
-        jacobian,
-        rate,
-        start=unloaded,
-        tangent=tangent,
-        step_weights=model.step_weights,
-        first_step=first_step(model),
-    )
+    # The load factor is t itself.
+    functions = (model.path_residual, model.path_jacobian)
+    path = _path(model, functions, lambda load_factor: (*given, load_factor), rate, unloaded)
+    return replace(path, tangent=tangent, first_step=first_step(model))
 
 
 def backwards(path: Path, end: FloatArray) -> Path:
@@ -111,20 +96,10 @@ def input_path(
     change = after - before
     parameter_change = None if parameters is None else parameters[1] - parameters[0]
     load_factor = 1.0
-    path_residual = model.path_residual
-    path_jacobian = model.path_jacobian
 
     def arguments_at(t: float) -> list[FloatArray]:
         inputs = between(before, after, t)
         return [inputs] if parameters is None else [inputs, between(*parameters, t)]
-
-    def residual(x: FloatArray, t: float) -> FloatArray:
-        g = path_residual(x, *arguments_at(t), load_factor)
-        return column(g)
-
-    def jacobian(x: FloatArray, t: float) -> Jacobian:
-        sparse = path_jacobian(x, *arguments_at(t), load_factor)
-        return _solvable(model, sparse)
 
     def rate(x: FloatArray, t: float) -> FloatArray:
         load_factor_rate = 0.0
@@ -133,6 +108,28 @@ def input_path(
         if parameter_change is not None and np.any(parameter_change):
             dg_dt = dg_dt + column(model.parameter_jacobian(x, *arguments) @ parameter_change)
         return dg_dt
+
+    functions = (model.path_residual, model.path_jacobian)
+    return _path(model, functions, lambda t: (*arguments_at(t), load_factor), rate, start)
+
+
+def _path(
+    model: SystemFunctions,
+    functions: tuple[ca.Function, ca.Function],
+    arguments_at: Callable[[float], tuple[FloatArray | float, ...]],
+    rate: Callable[[FloatArray, float], FloatArray],
+    start: FloatArray,
+) -> Path:
+    """The path on which the arguments of a model's functions, ``path_residual`` and ``path_jacobian``, follow t."""
+    path_residual, path_jacobian = functions
+
+    def residual(x: FloatArray, t: float) -> FloatArray:
+        return column(path_residual(x, *arguments_at(t)))
+
+    def jacobian(x: FloatArray, t: float) -> Jacobian:
+        """Derivative of the residual by x: sparse for an assembly, dense for single rods."""
+        sparse = path_jacobian(x, *arguments_at(t))
+        return sparse if model.is_assembly else np.asarray(sparse.full())
 
     return Path(residual, jacobian, rate, start, step_weights=model.step_weights)
 
@@ -148,13 +145,6 @@ def first_step(model: Model) -> float:
     if model.discrete.frames and not model.discrete.closed_unloaded:
         return FIRST_STEP
     return 1.0
-
-
-def _solvable(model: SystemFunctions, jacobian: ca.DM) -> Jacobian:
-    """A Jacobian in the form for a solve: sparse for an assembly, dense for single rods."""
-    if model.is_assembly:
-        return jacobian
-    return np.asarray(jacobian.full())
 
 
 def column(vector: ca.DM) -> FloatArray:

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.numerics.neutral import kept_by
 
 ZERO = 1e-10
 """Share of the largest eigenvalue, or of EI/ℓ if that is more, below which an eigenvalue is zero to rounding."""
@@ -121,7 +122,7 @@ def admissible_spectrum(jacobian: FloatArray, allowed: ConstrainedVariations) ->
         constraints = constraints / roots
     basis = np.eye(len(allowed.free))
     if len(constraints):
-        basis = _null_space(constraints)
+        basis = kept_by(constraints, DEPENDENT)
         hessian = basis.T @ hessian @ basis
     if not hessian.size:
         # The constraints leave no admissible variation.
@@ -140,14 +141,6 @@ def _yielding(jacobian: FloatArray, allowed: ConstrainedVariations) -> npt.NDArr
     own = np.abs(np.diagonal(jacobian)[allowed.held])
     is_soft = gradients * pulls <= RIGID * own
     return np.asarray(allowed.held[(own > 0.0) & is_soft])
-
-
-def _null_space(constraints: FloatArray) -> FloatArray:
-    """Orthonormal basis of the variations that keep constraints, one in each column."""
-    _, singular, rows = np.linalg.svd(constraints)
-    independent = singular > DEPENDENT * singular[0]
-    rank = int(np.sum(independent))
-    return np.asarray(rows[rank:].T)
 
 
 def restricted(

@@ -76,7 +76,12 @@ def cubic_coefficients(knots: FloatArray, values: FloatArray, *, natural: bool =
     """
     spacing = np.diff(knots)[:, None]
     chord = np.diff(values, axis=0) / spacing
-    slopes = _spline_slopes(spacing, chord, natural=natural)
+    return _cubics(spacing, values, _spline_slopes(spacing, chord, natural=natural))
+
+
+def _cubics(spacing: FloatArray, values: FloatArray, slopes: FloatArray) -> FloatArray:
+    """Coefficients of 1, s, s², s³ of the cubics with these values and slopes at k knots, shape (k − 1, 4, entries)."""
+    chord = np.diff(values, axis=0) / spacing
     left = slopes[:-1]
     right = slopes[1:]
     quadratic = (3 * chord - 2 * left - right) / spacing
@@ -247,13 +252,7 @@ class HermiteCurve:
     @cached_property
     def _polynomials(self) -> FloatArray:
         """Coefficients of value, slope, square and cube in the distance from the left point, shape (n − 1, 4)."""
-        width = np.diff(self.abscissae)
-        chord = np.diff(self.values) / width
-        left = self.slopes[:-1]
-        right = self.slopes[1:]
-        square = (3 * chord - 2 * left - right) / width
-        cube = (left + right - 2 * chord) / width**2
-        return np.column_stack([self.values[:-1], left, square, cube])
+        return _cubics(np.diff(self.abscissae), self.values, self.slopes)
 
     @cached_property
     def _integrals(self) -> FloatArray:

@@ -515,6 +515,16 @@ class DiscreteScene:
         """Number of unknowns."""
         return self.unknowns.size
 
+    def existing(self, modes: Mapping[str, Sequence[int]]) -> npt.NDArray[np.bool_]:
+        """Whether each unknown exists with these numbers of modes of the strains of each rod too, shape (size,)."""
+        kept = np.ones(self.size, dtype=bool)
+        # Flows have the modes of strains, once for each branch.
+        for block, entries in self.unknowns.of_kind(BlockKind.STRAIN, BlockKind.FLOW):
+            rod = self.rods[block.owner]
+            of_strains = [rod.degrees(c) < count for c, count in zip(rod.columns, modes[block.owner], strict=True)]
+            kept[entries] = np.tile(np.concatenate(of_strains), block.size // rod.size)
+        return kept
+
     def multipliers(self, placed: PlacedConstraint) -> slice:
         """Slice of the multipliers of a constraint in x."""
         return self.unknowns.slice_of(BlockKind.MULTIPLIER, placed.where)
@@ -599,14 +609,7 @@ class Richer:
     @cached_property
     def known(self) -> npt.NDArray[np.bool_]:
         """Whether each unknown is one of the coarse scene too, not a strain of higher degree; shape (richer size,)."""
-        known = np.ones(self.discrete.size, dtype=bool)
-        # Flows have the modes of strains, once for each branch.
-        for block, entries in self.discrete.unknowns.of_kind(BlockKind.STRAIN, BlockKind.FLOW):
-            rich_rod = self.discrete.rods[block.owner]
-            modes = self.coarse.rods[block.owner].discretisation.modes
-            of_strains = [rich_rod.degrees(c) < count for c, count in zip(rich_rod.columns, modes, strict=True)]
-            known[entries] = np.tile(np.concatenate(of_strains), block.size // rich_rod.size)
-        return known
+        return self.discrete.existing({name: rod.discretisation.modes for name, rod in self.coarse.rods.items()})
 
     @cached_property
     def missing_rods(self) -> list[str]:
@@ -635,10 +638,9 @@ class Richer:
         pairs = np.full(self.discrete.size, 2 * self.strain_count + 1)
         strain = 0
         for name, rich_rod in self.discrete.rods.items():
-            first = self.discrete.unknowns.strain(name).start
             for component, columns in rich_rod.columns.items():
                 degrees = rich_rod.degrees(component)
-                own = pairs[first + columns.start : first + columns.stop]
+                own = pairs[self.discrete.unknowns.strain(name)][columns]
                 own[degrees > degrees.max() - 4] = 2 * strain + 1
                 own[degrees > degrees.max() - 2] = 2 * strain
                 strain += 1
@@ -713,9 +715,8 @@ class Richer:
     @cached_property
     def _nominal_flexibility(self) -> ca.DM:
         """K⁻¹ of all rods by the numbers that scale the equations, size×size, zero for other unknowns than strains."""
-        size = self.discrete.size
-        flexibility = np.zeros((size, size))
         nominal = self.discrete.nominal
+        flexibility = np.zeros((nominal.size, nominal.size))
         for name, rod in nominal.rods.items():
             strains = nominal.unknowns.strain(name)
             flexibility[strains, strains] = np.linalg.inv(known(rod.stiffness))

@@ -19,7 +19,6 @@ import numpy as np
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.contact_guards import ContactPhase
-from cosserat_casadi.motion.one_sided import Closed
 from cosserat_casadi.numerics.integration import StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.numerics.step import CarriedStep
@@ -52,7 +51,7 @@ class Resume:
 
     Attributes:
         at: state in the coordinates of the steps, with the contact forces appended.
-        phases: the cables that are taut and the joints at their stops, or the contacts.
+        phases: the contacts, the cables that are taut and the joints at their stops.
         places: abscissae to which the contacts were last followed.
         guard: number of the guard that came to zero there; None if no guard did.
         first: size of the next step, s.
@@ -61,7 +60,7 @@ class Resume:
     """
 
     at: Instant
-    phases: ContactPhase | Closed
+    phases: ContactPhase
     places: tuple[float, ...]
     guard: int | None
     first: float
@@ -199,7 +198,7 @@ def _value(kind: Any, data: Any) -> Any:
     if origin in (Union, UnionType):
         if data is None:
             return None
-        (member,) = (one for one in arguments if one is not NoneType and is_dataclass(one) == isinstance(data, dict))
+        (member,) = (one for one in arguments if one is not NoneType)
         return _value(member, data)
     if origin is np.ndarray:
         return _array(data)

@@ -27,7 +27,9 @@ from cosserat_casadi.motion.constraint_projection import Closing
 from cosserat_casadi.motion.contact_checks import unfit_rods
 from cosserat_casadi.motion.motion_checks import immovable
 from cosserat_casadi.motion.section_pairs import SECTIONS, TouchingPairs
+from cosserat_casadi.motion.small_motions import quaternion_growth
 from cosserat_casadi.numerics.collocation import STAGES, Collocation, radau
+from cosserat_casadi.numerics.neutral import kept_by
 
 MECHANICAL = (BlockKind.STRAIN, BlockKind.POSE, BlockKind.COORDINATE)
 """Unknowns whose rates are velocities of rods, bodies and joints."""
@@ -187,18 +189,11 @@ class MotionStage:
         Raises:
             ValueError: parameters are given to a stage that takes none, or are missing.
         """
-        discrete = self.model.discrete
-        moving = np.concatenate([np.arange(len(x))[span] for _, span in discrete.unknowns.of_kind(*MECHANICAL)])
+        mechanical = self.model.discrete.unknowns.of_kind(*MECHANICAL)
+        moving = np.concatenate([np.arange(len(x))[span] for _, span in mechanical])
         jacobian, _ = self.model.jacobian(x, inputs, *_asked_for(self.model.parameters.size > 0, p))
-        # No mechanics sees the norm of a quaternion.
-        norms = np.zeros((len(discrete.frames), len(x)))
-        for row, (name, frame) in zip(norms, discrete.frames.items(), strict=True):
-            quaternion = discrete.deviation(name)
-            row[quaternion][3:] = frame.start.quaternion + x[quaternion][3:]
-        held_rows = np.vstack([jacobian.full()[Closing(self.model).rows], norms])
-        _, sizes, directions = np.linalg.svd(held_rows[:, moving])
-        held = int(np.sum(sizes > DEPENDENT * sizes.max(initial=0.0)))
-        return ca.DM(directions[held:]) @ self.v(state)[moving.tolist()]
+        held_rows = np.vstack([jacobian.full()[Closing(self.model).rows], quaternion_growth(self.model, x)])
+        return ca.DM(kept_by(held_rows[:, moving], DEPENDENT)).T @ self.v(state)[moving.tolist()]
 
     @cached_property
     def transition(self) -> ca.DM:

@@ -302,13 +302,26 @@ class Facing(ABC):
             gap: the gap.
             slides: whether its place is where the gap is least; else it is fixed.
         """
+        return np.asarray(self.turning_distance(by_nodes, gap, slides=slides) / self.length)
+
+    def turning_distance(self, by_nodes: FloatArray, gap: SectionGap, *, slides: bool) -> FloatArray:
+        """Second derivative of a distance along motions of the points, m.
+
+        Args:
+            by_nodes: motions of the points, shape (M, 3, n), or (M, 3) for one motion, m.
+            gap: the gap.
+            slides: whether its place is where the gap is least; else it is fixed.
+
+        Returns:
+            the derivative, shape (n, n), or () for one motion.
+        """
         moved = np.tensordot(gap.rows.value, by_nodes, 1)
         second = moved.T @ gap.curvature @ moved
         if slides:
             turned = np.tensordot(gap.rows.first, by_nodes, 1)
             slope = gap.normal @ turned + gap.tangent @ gap.curvature @ moved
-            second = second - np.outer(slope, slope) / (gap.bend * self.length)
-        return np.asarray(second / self.length)
+            second = second - np.multiply.outer(slope, slope) / (gap.bend * self.length)
+        return np.asarray(second)
 
     def rates(
         self, x: FloatArray, v: FloatArray, inputs: Sequence[FloatArray], gap: SectionGap, *, slides: bool
@@ -324,12 +337,9 @@ class Facing(ABC):
         """
         value, rate, acceleration = inputs
         velocities, accelerations = self.points.straight_on(x, value, v, rate)
-        velocity = gap.rows.value @ velocities
-        first = float(gap.normal @ velocity)
-        second = float(gap.normal @ (gap.rows.value @ accelerations) + velocity @ gap.curvature @ velocity)
-        if slides:
-            slope = float(gap.normal @ (gap.rows.first @ velocities) + gap.tangent @ gap.curvature @ velocity)
-            second -= slope**2 / (gap.bend * self.length)
+        first = float(gap.normal @ (gap.rows.value @ velocities))
+        second = float(gap.normal @ (gap.rows.value @ accelerations))
+        second += float(self.turning_distance(velocities, gap, slides=slides))
         if np.any(acceleration):
             second += self.length * float(self.by_inputs(x, value, gap) @ acceleration)
         return first / self.length, second / self.length

@@ -1,23 +1,13 @@
-"""Continuation of a motion after its equations change: the interface that cables, stops and contacts share."""
+"""Continuation of a motion after its equations change, by cables, stops or contacts."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Generic, Protocol, TypeVar
 
-from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.moving_inputs import Piece
+from cosserat_casadi.motion.contact_guards import ContactPhase
 from cosserat_casadi.numerics.consistent_start import ConsistentStart
-from cosserat_casadi.numerics.guards import Guards
-from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
-
-Phases = TypeVar("Phases")
-"""State of the switches between two events: the taut cables and the joints at their stops, or the contacts."""
-
-HeldPhases = TypeVar("HeldPhases", covariant=True)
-"""Phases in a record that holds phases and never takes them as an argument."""
-
+from cosserat_casadi.numerics.motion_equations import Instant
 
 LAID_DOWN = "laid_down"
 """Kind of the event in which a rod is laid down because its contacts change over and over."""
@@ -55,12 +45,12 @@ class ContactEvent:
 
 
 @dataclass(frozen=True)
-class Restart(Generic[HeldPhases]):
+class Restart:
     """The state from which a motion goes on after an event, or begins.
 
     Attributes:
         start: state after the event, with accelerations, and tensions or contact forces.
-        phases: the taut cables and the joints at their stops, or the contacts, after the event.
+        phases: the contacts, the taut cables and the joints at their stops after the event.
         lost: energy lost in impacts, J.
         work: work of moving inputs, such as a base, in the event, J.
         events: changes of contact.
@@ -68,26 +58,8 @@ class Restart(Generic[HeldPhases]):
     """
 
     start: ConsistentStart
-    phases: HeldPhases
+    phases: ContactPhase
     lost: float = 0.0
     work: float = 0.0
     events: tuple[ContactEvent, ...] = ()
     stalled: str | None = None
-
-
-class Switching(Protocol[Phases]):
-    """Cables and stops, or contacts, that switch between equations of motion, which are smooth between events."""
-
-    def first_phases(self, x: FloatArray, inputs: FloatArray) -> Phases:
-        """Determine the phases at a state."""
-
-    def arranged(self, plain: MotionEquations, piece: Piece, phases: Phases) -> tuple[MotionEquations, Guards | None]:
-        """Make the equations of motion in these phases, and guards that are not negative while the phases last."""
-
-    def settling(self, plain: MotionEquations, piece: Piece, phases: Phases) -> Settling | None:
-        """Return the correction of the ends of steps in these phases; None if the ends need no correction."""
-
-    def restarted(
-        self, plain: MotionEquations, piece: Piece, at: Instant, phases: Phases, guard: int | None, interval: float
-    ) -> Restart[Phases]:
-        """Restart a motion after an event, or start it."""

@@ -148,7 +148,7 @@ class ExactContacts:
         interval: float,
         *,
         jerked: bool = False,
-    ) -> Restart[ContactPhase]:
+    ) -> Restart:
         """Restart a motion after an event, or start it.
 
         Args:
@@ -293,7 +293,7 @@ class ExactContacts:
                 known = self._lying(known, touch, before, inputs, LAID_DOWN)
         return known
 
-    def _struck(self, onset: Onset, known: _Known, *, jerked: bool) -> Restart[ContactPhase]:
+    def _struck(self, onset: Onset, known: _Known, *, jerked: bool) -> Restart:
         """Restart after new contacts have struck, or after a cable or a stop has jerked the old ones."""
         x, inputs = onset.before.x, onset.inputs.value
         old = (*known.held, *known.left)
@@ -359,7 +359,7 @@ class ExactContacts:
             energies.append(max(0.0, float(-0.5 * impulse * unit * speed)))
         return energies
 
-    def _stopped(self, onset: Onset, known: _Known, touching: Touches) -> Restart[ContactPhase]:
+    def _stopped(self, onset: Onset, known: _Known, touching: Touches) -> Restart:
         """End of a motion at which it stays undecided which contacts remain; the state is unchanged."""
         names = sorted({self.facings[touch.facing].touched for touch in touching})
         why = (

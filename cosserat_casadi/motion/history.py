@@ -23,11 +23,11 @@ from cosserat_casadi.motion.constraint_projection import Closing
 from cosserat_casadi.motion.contact_forces import Follower
 from cosserat_casadi.motion.contact_guards import ContactPhase, start_inside
 from cosserat_casadi.motion.contact_record import ContactRecord, MotionContact, Stretch
-from cosserat_casadi.motion.event_restart import ContactEvent, Phases, Restart, Settling, Switching
+from cosserat_casadi.motion.event_restart import ContactEvent, Restart, Settling
 from cosserat_casadi.motion.kernel_residual import KernelJacobians, KernelResidual
 from cosserat_casadi.motion.momentum import MomentumKeeper, flies_free, functions_of_momentum
 from cosserat_casadi.motion.moving_inputs import Piece
-from cosserat_casadi.motion.one_sided import OneSided, sags_by_cable
+from cosserat_casadi.motion.one_sided import sags_by_cable
 from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries, RepeatedCall
 from cosserat_casadi.motion.sided_contacts import SidedContacts
 from cosserat_casadi.motion.step_kernels import StepKernels, interpreted
@@ -140,7 +140,7 @@ class Leg:
     """
 
     piece: Piece
-    restart: Restart[object]
+    restart: Restart
     integration: Integration
     equations: MotionEquations | None
 
@@ -197,8 +197,7 @@ class History:
         leg = self.legs[-1]
         ended = leg.integration
         phases = leg.restart.phases
-        assert isinstance(phases, ContactPhase | tuple), "cables or contacts"
-        places = tuple(phases.follower.places) if isinstance(phases, ContactPhase) else ()
+        places = tuple(phases.follower.places)
         guard = ended.guard if self.stopped is None else None
         # Behind a guard there are other equations.
         memory = ended.memory if guard is None else None
@@ -368,7 +367,6 @@ class History:
         stretches = []
         for leg in self.legs:
             phases = leg.restart.phases
-            assert isinstance(phases, ContactPhase), "where rods touch exactly phases are contacts"
             stretches.append(Stretch(leg.piece, phases.touches, leg.integration.steps, phases.laid))
         return ContactRecord(self.model, stretches, self.flight.to_model)
 
@@ -411,7 +409,7 @@ class FreeFlight:
         """Map a state in the unknowns of the model to the coordinates of the steps."""
         return instant if self.coordinates is None else self.coordinates.from_model(instant)
 
-    def restart_of_steps(self, restart: Restart[Phases]) -> Restart[Phases]:
+    def restart_of_steps(self, restart: Restart) -> Restart:
         """Map the state of a restart from the unknowns of the model to the coordinates of the steps."""
         return replace(restart, start=replace(restart.start, instant=self.to_steps(restart.start.instant)))
 
@@ -473,7 +471,7 @@ def integrated(
     resume: Resume | None = None,
     flight: FreeFlight | None = None,
     stops: Stops | None = None,
-    begun: Restart[Any] | None = None,
+    begun: Restart | None = None,
 ) -> History:
     """Integrate a model over all pieces of its inputs, or until one ends early.
 
@@ -549,7 +547,7 @@ class _GrowingMotion:
     model: Model
     kernels: StepKernels
     flight: FreeFlight
-    switching: Switching[Any]
+    switching: SidedContacts
     method: Collocation
     p: FloatArray | None
     after_step: AfterStep | None
@@ -557,9 +555,9 @@ class _GrowingMotion:
     end: float
     acting: float
     at: Instant
-    phases: Any
+    phases: ContactPhase
     settings: StepSettings
-    begun: Restart[Any] | None
+    begun: Restart | None
     guard: int | None = None
     memory: CarriedStep | None = None
     legs: list[Leg] = field(default_factory=list)
@@ -598,7 +596,7 @@ class _GrowingMotion:
                 return False
         return True
 
-    def _restart(self, plain: MotionEquations, piece: Piece) -> Restart[Any]:
+    def _restart(self, plain: MotionEquations, piece: Piece) -> Restart:
         """Find the state and the phases in which the next leg begins."""
         if self.memory is not None and self.at.time > piece.start:
             return Restart(ConsistentStart(self.at, 0.0, 0.0, 0.0, 0), self.phases)
@@ -619,7 +617,7 @@ class _GrowingMotion:
             check_start(self.model, piece, restart, sags, self.end)
         return restart
 
-    def _covers_leg(self, plain: MotionEquations, piece: Piece, restart: Restart[Any]) -> bool:
+    def _covers_leg(self, plain: MotionEquations, piece: Piece, restart: Restart) -> bool:
         """Integrate until phases change or the piece ends; return whether the motion goes on."""
         equations, guards = self.switching.arranged(plain, piece, self.phases)
         settings = self._settings(equations, piece)
@@ -657,7 +655,7 @@ class _GrowingMotion:
         self.at = integration.end
         self.guard = integration.guard
         first = integration.next_size
-        if not integration.steps and OneSided(self.model).pairs:
+        if not integration.steps and self.switching.sided.pairs:
             # A step that does not see what stiff parts answer to a blow would have the cable change again at once.
             first = max(SHORTER * first, AT_ONCE * self.end)
         self.settings = replace(self.settings, first=first)
@@ -703,18 +701,14 @@ def _switching(
     piece: Piece,
     phases: ContactPhase | None,
     resume: Resume | None,
-) -> tuple[Switching[Any], Any]:
+) -> tuple[SidedContacts, ContactPhase]:
     """Make the switches of the equations of a motion, and their state at the start, see :func:`integrated`."""
     inputs = piece.at(piece.start).value
-    resumed = None if resume is None else resume.phases
-    if not model.scene.touches_exactly:
-        pairs = OneSided(model)
-        return pairs, pairs.first_phases(x, inputs) if resumed is None or isinstance(resumed, ContactPhase) else resumed
     switching = SidedContacts(model, kernels.libraries)
-    if resume is not None and isinstance(resumed, ContactPhase):
-        follower = Follower(switching.contacts.facings, resumed.touches)
+    if resume is not None:
+        follower = Follower(switching.contacts.facings, resume.phases.touches)
         follower.places = list(resume.places)
-        return switching, replace(resumed, follower=follower)
+        return switching, replace(resume.phases, follower=follower)
     if phases is None:
         return switching, switching.first_phases(x, inputs)
     return switching, switching.with_pairs(phases, x, inputs)
@@ -750,9 +744,7 @@ def _lengths_of_free_rods(model: Model) -> list[str]:
     return [f"{rod.name}.length" for rod in model.scene.rods if rod.base.free]
 
 
-def check_start(
-    model: Model, piece: Piece, restart: Restart[object], sags: Mapping[str, float], duration: float
-) -> None:
+def check_start(model: Model, piece: Piece, restart: Restart, sags: Mapping[str, float], duration: float) -> None:
     """Refuse a motion whose start contradicts its constraints: nothing is repaired in silence.
 
     Args:
@@ -770,7 +762,7 @@ def check_start(
     grow = [name for name in _lengths_of_free_rods(model) if name in moving]
     problems = []
     short = {name: sag for name, sag in sags.items() if sag < -CONSISTENT}
-    if isinstance(restart.phases, ContactPhase) and restart.phases.touches and start.position_error > CONSISTENT:
+    if restart.phases.touches and start.position_error > CONSISTENT:
         problems.append(start_inside(restart.phases.follower.facings, start.position_error))
     elif short:
         which = ", ".join(f"{name!r} by {-sag:.2g}" for name, sag in short.items())

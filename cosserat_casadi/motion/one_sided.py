@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Generic
 
 import casadi as ca
 import numpy as np
@@ -24,10 +23,10 @@ from cosserat_casadi.model.discrete_scene import CableOfLength, JointStop
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.motion.contact_onset import LOW
-from cosserat_casadi.motion.event_restart import ContactEvent, HeldPhases, Restart
+from cosserat_casadi.motion.event_restart import ContactEvent, Restart
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import RepeatedCall
-from cosserat_casadi.numerics.consistent_start import consistent_start, impact
+from cosserat_casadi.numerics.consistent_start import impact
 from cosserat_casadi.numerics.guards import THROUGH, Guards
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
@@ -70,7 +69,7 @@ class Pair:
 
 
 @dataclass(frozen=True)
-class Settled(Generic[HeldPhases]):
+class Settled:
     """Continuation of a motion after it is decided which pairs are closed.
 
     Attributes:
@@ -81,7 +80,7 @@ class Settled(Generic[HeldPhases]):
         events: changes of pairs.
     """
 
-    onward: Restart[HeldPhases]
+    onward: Restart
     closed: Closed
     v: FloatArray
     lost: float
@@ -166,14 +165,6 @@ class OneSided:
 
         return replace(plain, residual=residual, jacobians=jacobians)
 
-    def arranged(self, plain: MotionEquations, piece: Piece, phases: Closed) -> tuple[MotionEquations, Guards | None]:
-        """Make the equations of motion with these pairs closed, and guards that are not negative while they last."""
-        return self.equations(plain, piece, phases), self.guards(piece, phases)
-
-    def settling(self, plain: MotionEquations, piece: Piece, phases: Closed) -> None:
-        """Return no correction of the ends of steps: pairs stay closed as far as the steps are exact."""
-        return
-
     def guards(self, piece: Piece, phases: Closed) -> Guards | None:
         """Make guards, gaps of open pairs and pushes of closed ones, which are not negative; None without pairs."""
         if not self.pairs:
@@ -192,32 +183,6 @@ class OneSided:
             return ()
         return tuple(bool(gap <= TOUCHING) for gap in self.gaps(x, inputs))
 
-    def restarted(
-        self,
-        plain: MotionEquations,
-        piece: Piece,
-        at: Instant,
-        phases: Closed,
-        guard: int | None,
-        interval: float,
-    ) -> Restart[Closed]:
-        """Restart a motion after an event, or start it.
-
-        Args:
-            plain: equations of the model.
-            piece: of its inputs.
-            at: state before the event.
-            phases: whether each pair is closed before the event.
-            guard: number of the pair whose guard came to zero; None at a start, or at the start of another piece.
-            interval: time after the event in which the equations are smooth, s.
-        """
-
-        def begin(closed: Closed, v: FloatArray) -> Restart[Closed]:
-            return Restart(consistent_start(self.equations(plain, piece, closed), at.time, at.x, v, interval), closed)
-
-        settled = self.settled(plain, piece, at, phases, guard, interval, begin, told=guard is not None)
-        return replace(settled.onward, lost=settled.lost, events=settled.events)
-
     def settled(
         self,
         plain: MotionEquations,
@@ -226,10 +191,10 @@ class OneSided:
         phases: Closed,
         guard: int | None,
         interval: float,
-        begin: Callable[[Closed, FloatArray], Restart[HeldPhases]],
+        begin: Callable[[Closed, FloatArray], Restart],
         *,
         told: bool,
-    ) -> Settled[HeldPhases]:
+    ) -> Settled:
         """Decide which pairs are closed after an event, or at the start of a motion, and continue the motion with them.
 
         Args:

@@ -14,7 +14,6 @@ Forces on both rods are opposite and collinear: they have neither a resultant no
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -115,27 +114,11 @@ class RodsFacing(RodFacing):
         """Read a gap that C has written, shape (gap_size(),)."""
         return RodGap(memory, self.points.count)
 
-    def turning(self, by_nodes: FloatArray, gap: SectionGap, *, slides: bool) -> FloatArray:
-        """Second derivative of a gap by the unknowns, less the part by second derivatives of the points, (n, n)."""
+    def turning_distance(self, by_nodes: FloatArray, gap: SectionGap, *, slides: bool) -> FloatArray:
+        """Second derivative of a distance along motions of the points of both rods, m, shape (n, n) or ()."""
         assert isinstance(gap, RodGap), "gaps of rods are of two sections"
         moved = np.tensordot(gap.rows.value, by_nodes, 1)
-        second = moved.T @ gap.other.curvature @ moved - self._taken(by_nodes, gap, slides=slides)
-        return np.asarray(second / self.length)
-
-    def rates(
-        self, x: FloatArray, v: FloatArray, inputs: Sequence[FloatArray], gap: SectionGap, *, slides: bool
-    ) -> tuple[float, float]:
-        """Rate of a gap, 1/s, and its second rate at zero accelerations of the unknowns, 1/s²."""
-        assert isinstance(gap, RodGap), "gaps of rods are of two sections"
-        value, rate, acceleration = inputs
-        velocities, accelerations = self.points.straight_on(x, value, v, rate)
-        velocity = gap.rows.value @ velocities
-        first = float(gap.normal @ velocity)
-        second = float(gap.normal @ (gap.rows.value @ accelerations) + velocity @ gap.other.curvature @ velocity)
-        second -= float(self._taken(velocities, gap, slides=slides))
-        if np.any(acceleration):
-            second += self.length * float(self.by_inputs(x, value, gap) @ acceleration)
-        return first / self.length, second / self.length
+        return np.asarray(moved.T @ gap.other.curvature @ moved - self._taken(by_nodes, gap, slides=slides))
 
     def _taken(self, by_nodes: FloatArray, gap: RodGap, *, slides: bool) -> FloatArray:
         """Reduction cᵀ M⁻¹ c of the second derivative of the distance by the sliding of both abscissae, m.

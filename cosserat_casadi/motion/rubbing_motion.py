@@ -80,7 +80,7 @@ class _Told:
     steps: RubbingSteps
     piece: Piece
     plain: MotionEquations
-    restart: Restart[ContactPhase]
+    restart: Restart
     legs: list[Leg] = field(default_factory=list)
     taken: list[RubbingStep] = field(default_factory=list)
     touches: tuple[RubbingTouch, ...] = ()

@@ -1,4 +1,6 @@
-"""Exact contact together with cables that may go slack and stops of joints: one kind of event at a time.
+"""Exact contact, cables that may go slack and stops of joints: what switches the equations of a motion.
+
+One kind of event is solved at a time.
 
 The impact of a cable that becomes taut, or of a joint that meets its stop, is solved first, as if nothing touched. Then
 the impact of contacts is solved, with taut cables and stopped joints held: obstacles push, and sections that are jerked
@@ -21,13 +23,14 @@ from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.one_sided import Closed, OneSided
 from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries
+from cosserat_casadi.numerics.consistent_start import consistent_start
 from cosserat_casadi.numerics.guards import THROUGH, Guards
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
 
 @dataclass(frozen=True)
 class SidedContacts:
-    """Exact contacts of a model, with its cables that may go slack and the stops of its joints.
+    """Exact contacts of a model, its cables that may go slack, and the stops of its joints, if it has any.
 
     Attributes:
         model: the model, built for a motion.
@@ -55,9 +58,17 @@ class SidedContacts:
         """Add the pairs that are closed at a state to contacts."""
         return replace(phases, closed=self.sided.first_phases(x, inputs))
 
-    def arranged(self, plain: MotionEquations, piece: Piece, phases: ContactPhase) -> tuple[MotionEquations, Guards]:
-        """Make the equations of motion with these contacts and pairs, and guards of the pairs, then of the contacts."""
-        equations, of_pairs = self.sided.arranged(plain, piece, phases.closed)
+    def arranged(
+        self, plain: MotionEquations, piece: Piece, phases: ContactPhase
+    ) -> tuple[MotionEquations, Guards | None]:
+        """Make the equations of motion with these contacts and pairs, and guards of the pairs, then of the contacts.
+
+        Guards are not negative while the phases last; None if nothing switches.
+        """
+        equations = self.sided.equations(plain, piece, phases.closed)
+        of_pairs = self.sided.guards(piece, phases.closed)
+        if not self.contacts.facings:
+            return equations, of_pairs
         equations, of_contacts = self.contacts.arranged(equations, piece, phases)
         if of_pairs is None:
             return equations, of_contacts
@@ -78,7 +89,7 @@ class SidedContacts:
         phases: ContactPhase,
         guard: int | None,
         interval: float,
-    ) -> Restart[ContactPhase]:
+    ) -> Restart:
         """Restart or start a motion; arguments as for :meth:`ExactContacts.restarted`."""
         size = self.model.size
         before = Instant(at.time, at.x[:size], at.v[:size], at.a[:size])
@@ -87,8 +98,10 @@ class SidedContacts:
         if of_contact is not None:
             of_contact -= count
 
-        def begin(closed: Closed, v: FloatArray) -> Restart[ContactPhase]:
+        def begin(closed: Closed, v: FloatArray) -> Restart:
             equations = self.sided.equations(plain, piece, closed)
+            if not self.contacts.facings:
+                return Restart(consistent_start(equations, before.time, before.x, v, interval), phases)
             instant = Instant(before.time, before.x, v, before.a)
             jerked = v is not before.v
             return self.contacts.restarted(equations, piece, instant, phases, of_contact, interval, jerked=jerked)
@@ -98,7 +111,7 @@ class SidedContacts:
         )
         onward, closed, events = settled.onward, settled.closed, settled.events
         jerked = settled.v is not before.v
-        if jerked or any(event.kind == "impact" for event in onward.events):
+        if self.contacts.facings and (jerked or any(event.kind == "impact" for event in onward.events)):
             for number, pair in enumerate(self.sided.pairs):
                 # What jerks stays closed: without it velocities would be those before, which close it.
                 if not (closed[number] and pair.rigid) or (jerked and number == of_pair):

@@ -10,7 +10,6 @@ import logging
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Any
 
 import numpy as np
 
@@ -249,7 +248,7 @@ class Simulator:
         return {}
 
     @cached_property
-    def _begun(self) -> dict[Libraries, Restart[Any]]:
+    def _begun(self) -> dict[Libraries, Restart]:
         """Restarts at the start of motions, by shared objects; a first motion would move the trackers of contacts."""
         return {}
 

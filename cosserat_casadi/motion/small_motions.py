@@ -17,7 +17,9 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.relaxing_rows import BranchRows
+from cosserat_casadi.numerics.neutral import kept_by
 
 DEPENDENT = 1e-9
 """Singular value of G, over the largest one, below which a constraint is void or redundant.
@@ -119,10 +121,7 @@ class SmallMotions:
         """Orthonormal basis Z of the motions that the constraints admit, in scaled coordinates, shape (n, k)."""
         if not len(self.constraints):
             return np.eye(self.moving.size)
-        _, singular, rows = np.linalg.svd(self.constraints)
-        independent = singular > DEPENDENT * singular.max(initial=0.0)
-        rank = int(np.sum(independent))
-        return np.asarray(rows[rank:].T)
+        return kept_by(self.constraints, DEPENDENT)
 
     def projected(self, rows: FloatArray) -> FloatArray:
         """Project rows of the moving coordinates, shape (n, j), on the free coordinates z, shape (k, j)."""
@@ -170,3 +169,14 @@ class SmallMotions:
         rows = self.moving_rows(matrix)[:, self.moving]
         scaled = rows / self.roots
         return self.projected(scaled @ self.basis)
+
+
+def quaternion_growth(model: Model, x: FloatArray) -> FloatArray:
+    """Gradients of the norms of the quaternions of floating frames, which no mechanics sees, shape (frames, size)."""
+    discrete = model.discrete
+    gradients = np.zeros((len(discrete.frames), model.size))
+    for row, (name, frame) in zip(gradients, discrete.frames.items(), strict=True):
+        entries = discrete.deviation(name)
+        # Of the seven unknowns of a frame the last four are what its quaternion differs by from that at the start.
+        row[entries][3:] = frame.start.quaternion + x[entries][3:]
+    return gradients

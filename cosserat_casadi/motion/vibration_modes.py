@@ -34,7 +34,7 @@ from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.eigenproblem import REAL, ComplexArray, eigenpairs, slowest_told
 from cosserat_casadi.motion.mode_shapes import NumberArray, RodShape, end_of_cluster, normalised, rod_shape
 from cosserat_casadi.motion.relaxing_rows import branch_rows, integrated
-from cosserat_casadi.motion.small_motions import SmallMotions
+from cosserat_casadi.motion.small_motions import SmallMotions, quaternion_growth
 from cosserat_casadi.numerics.continuation import ContinuationSettings
 from cosserat_casadi.numerics.progress import Progress, Report, not_told
 from cosserat_casadi.result import Result
@@ -228,7 +228,7 @@ def small_motions(
     parameters = [] if p is None else [p]
     arguments = [x, rest, rest, inputs, *parameters, rate, acceleration]
     matrices = [matrix.full() for matrix in model.dynamics_jacobian(*arguments)[:3]]
-    held_gradients = _quaternion_growth(model, x)
+    held_gradients = quaternion_growth(model, x)
     if contacts is not None:
         # Flows, which relaxing stress has in motion, are behind the unknowns of the equilibrium.
         size = contacts.stiffness.shape[0]
@@ -247,17 +247,6 @@ def small_motions(
         held_gradients,
         tuple(branches),
     )
-
-
-def _quaternion_growth(model: Model, x: FloatArray) -> FloatArray:
-    """Gradients of the norms of the quaternions of floating frames, shape (frames, size)."""
-    discrete = model.discrete
-    gradients = np.zeros((len(discrete.frames), model.size))
-    for row, (name, frame) in zip(gradients, discrete.frames.items(), strict=True):
-        entries = discrete.deviation(name)
-        # Of the seven unknowns of a frame the last four are what its quaternion differs by from that at the start.
-        row[entries][3:] = frame.start.quaternion + x[entries][3:]
-    return gradients
 
 
 def modes_at(solution: Solution, count: int | None = None, *, report: Report | None = None) -> Modes:

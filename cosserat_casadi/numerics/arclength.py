@@ -15,6 +15,7 @@ import numpy as np
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.broyden import dense, shortest_step
 from cosserat_casadi.numerics.continuation import Path
+from cosserat_casadi.numerics.neutral import kept_by
 from cosserat_casadi.numerics.newton import relative_norm
 
 SINGULAR = 1e-9
@@ -269,22 +270,11 @@ def tangent_along(derivative: FloatArray, direction: FloatArray, singular: float
     Returns:
         the tangent, shape (n + 1,); None if a number is not finite, or the direction is orthogonal to the null space.
     """
-    basis = null_space(derivative, singular)
-    if basis is None:
+    if not np.all(np.isfinite(derivative)):
         return None
+    basis = kept_by(derivative, singular)
     projected = basis @ (basis.T @ direction)
     length = float(np.linalg.norm(projected))
     if not length > 0.0:
         return None
     return projected / length
-
-
-def null_space(derivative: FloatArray, singular: float = SINGULAR) -> FloatArray | None:
-    """Orthonormal basis of the null space of ∂g/∂y up to rounding, shape (n + 1, k) with k ≥ 1; None if not finite."""
-    if not np.all(np.isfinite(derivative)):
-        return None
-    _, values, rows = np.linalg.svd(derivative)
-    largest = float(values.max(initial=0.0))
-    rounding = singular * max(largest, 1e-300)
-    rank = int(np.sum(values > rounding))
-    return np.asarray(rows[rank:].T)

@@ -8,6 +8,7 @@ interpolation.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -76,14 +77,15 @@ def crossing(step: TimeStep, guards: Guards) -> tuple[float, int] | None:
         earlier, later = float(times[number]), float(times[number + 1])
         found = []
         for k in range(len(before)):
+            value = partial(_value, step, guards, k)
             fallen: tuple[float, float] | None = (later, after[k])
             if not after[k] < -THROUGH:
                 fallen = None
                 falls = steepest[number, k]
                 if min(before[k], after[k]) > THROUGH and before[k] + after[k] < falls:
-                    fallen = _dip(step, guards, k, (earlier, later), falls / (later - earlier))
+                    fallen = _dip(value, (earlier, later), falls / (later - earlier))
             if fallen is not None:
-                found.append((_zero(step, guards, k, (earlier, before[k]), fallen), k))
+                found.append((_zero(value, (earlier, before[k]), fallen), k))
         if found:
             return min(found)
     return None
@@ -108,24 +110,21 @@ def _far_from_zero(step: TimeStep, guards: Guards, times: FloatArray, seen: dict
     return True
 
 
-def _dip(
-    step: TimeStep, guards: Guards, guard: int, between: tuple[float, float], steepest: float
-) -> tuple[float, float] | None:
+def _value(step: TimeStep, guards: Guards, guard: int, time: float) -> float:
+    """One guard at a time of a step."""
+    return float(guards(step.at(time))[guard])
+
+
+def _dip(value: Callable[[float], float], between: tuple[float, float], steepest: float) -> tuple[float, float] | None:
     """Find a time between two others at which a guard is negative, with its value; None if its minimum is not.
 
     Golden-section search: J. Kiefer, *Sequential minimax search for a maximum*, Proc. AMS 4 (1953).
 
     Args:
-        step: the step.
-        guards: all guards.
-        guard: index of the guard.
+        value: the guard over time.
         between: the times, s.
         steepest: largest rate at which it falls, 1/s.
     """
-
-    def value(time: float) -> float:
-        return float(guards(step.at(time))[guard])
-
     start, end = between
     inner = [start + GOLDEN * (end - start), end - GOLDEN * (end - start)]
     values = [value(time) for time in inner]
@@ -147,12 +146,8 @@ def _dip(
     return None
 
 
-def _zero(step: TimeStep, guards: Guards, guard: int, first: tuple[float, float], last: tuple[float, float]) -> float:
-    """Find the zero of one guard between two times of a step, given with its values there."""
-
-    def value(time: float) -> float:
-        return float(guards(step.at(time))[guard])
-
+def _zero(value: Callable[[float], float], first: tuple[float, float], last: tuple[float, float]) -> float:
+    """Find the zero of a guard over time between two times of a step, given with its values there."""
     if first[1] <= 0.0:
         # It lay on zero already: it may have risen from there for a while.
         for halvings in range(1, MOST_HALVINGS + 1):

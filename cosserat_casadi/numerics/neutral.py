@@ -51,3 +51,15 @@ def direction_in(basis: FloatArray, leading: int | None = None) -> FloatArray:
     direction = basis @ basis[largest]
     length = np.linalg.norm(direction)
     return np.asarray(direction / length)
+
+
+def kept_by(constraints: FloatArray, share: float) -> FloatArray:
+    """Orthonormal basis of the changes of n unknowns that keep constraints, shape (n, k).
+
+    Args:
+        constraints: rows of linear constraints, shape (m, n).
+        share: singular value over the largest one up to which a constraint counts as dependent on others.
+    """
+    _, singular, rows = np.linalg.svd(constraints)
+    rank = int(np.sum(singular > share * singular.max(initial=0.0)))
+    return np.asarray(rows[rank:].T)

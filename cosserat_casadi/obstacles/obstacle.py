@@ -92,3 +92,23 @@ def across(direction: FloatArray) -> tuple[FloatArray, FloatArray]:
     first /= np.linalg.norm(first)
     second = np.cross(direction, first) / np.linalg.norm(direction)
     return first, second
+
+
+def capsule_net(start: FloatArray, end: FloatArray, radius: float) -> FloatArray:
+    """Points of a round bar with half a ball at either end, row by row along it, shape (m, n, 3), m.
+
+    Args:
+        start: centre of one half ball, shape (3,), m.
+        end: centre of the other half ball, shape (3,), m; ``start`` for a whole ball.
+        radius: radius of bar and balls, m.
+    """
+    axis = end - start
+    length = np.linalg.norm(axis)
+    direction = axis / length if length > 0.0 else np.array([0.0, 0.0, 1.0])
+    first, second = across(direction)
+    polar = np.linspace(0.0, np.pi, 14)
+    centres = np.where((polar < np.pi / 2)[:, None], start, end)
+    along = centres - radius * np.cos(polar)[:, None] * direction
+    around = np.linspace(0.0, 2 * np.pi, 25)
+    ring = np.cos(around)[:, None] * first + np.sin(around)[:, None] * second
+    return np.asarray(along[:, None] + radius * np.sin(polar)[:, None, None] * ring)

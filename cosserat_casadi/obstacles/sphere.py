@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.obstacles.obstacle import Obstacle, rounded_norm
+from cosserat_casadi.obstacles.obstacle import Obstacle, capsule_net, rounded_norm
 from cosserat_casadi.scene.obstacle_records import Sphere
 
 
@@ -24,13 +24,8 @@ class SphereObstacle(Obstacle[Sphere]):
 
     def mesh(self, obstacle: Sphere, near: FloatArray, size: float) -> FloatArray:
         """Circles of latitude."""
-        polar = np.linspace(0.0, np.pi, 13)[:, None]
-        around = np.linspace(0.0, 2 * np.pi, 25)[None, :]
-        ring = np.sin(polar)
-        directions = np.stack(
-            [ring * np.cos(around), ring * np.sin(around), np.cos(polar) * np.ones_like(around)], axis=-1
-        )
-        return np.asarray(np.asarray(obstacle.centre) + obstacle.radius * directions)
+        centre = np.asarray(obstacle.centre)
+        return capsule_net(centre, centre, obstacle.radius)
 
     def primitive(self, obstacle: Sphere, size: float) -> dict[str, Any]:
         """A ball."""

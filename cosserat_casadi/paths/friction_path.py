@@ -6,6 +6,7 @@ history of the point before, ends at an equilibrium, and then updates the histor
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import inf
 
@@ -110,25 +111,19 @@ def _equilibrium(model: Model, inputs: FloatArray, before: list[Solution], longe
     return found if found.converged and near and not passes else None
 
 
-def foretold_increment(longest: float, way: float, last: float) -> float:
-    """Increment of the factor in which the shape, at its last rate of change, changes by the longest step.
+def next_factor(settings: ArcSettings, step: float, last: Sequence[tuple[float, FloatArray]]) -> float:
+    """Factor of the next point of a path with friction.
 
     Args:
-        longest: the longest change of the shape.
-        way: change of the shape in the last increment, in equal units.
-        last: the last increment of the factor.
+        settings: settings with the longest increment and the longest change of the shape.
+        step: wanted increment, unless the shape, at its last rate of change, would change too much.
+        last: factor and shape, in equal units, of the last two points, or of the first one.
     """
-    return longest * last / way if way > 0.0 else inf
-
-
-def _foretold(points: list[_Point], longest: float) -> float:
-    """The :func:`foretold_increment` after the last two points; infinite for one point."""
-    if len(points) < 2:
-        return inf
-    before, last = points[-2:]
-    places = last.solution.model.discrete.unknowns.differential
-    way = float(np.linalg.norm((last.solution.x - before.solution.x)[places]))
-    return foretold_increment(longest, way, last.factor - before.factor)
+    (before, shape), (factor, reached) = last[0], last[-1]
+    way = float(np.linalg.norm(reached - shape))
+    allowed = WITHIN * settings.longest * (factor - before) / way if way > 0.0 else inf
+    end = min(factor + min(step, settings.load_factor_change, allowed), 1.0)
+    return 1.0 if 1.0 - end < SHORTEST else end
 
 
 def follow_friction_path(
@@ -149,6 +144,7 @@ def follow_friction_path(
     model = moved.model
     memory = model.inputs.memory
     assert memory is not None, "a model with memory"
+    places = model.discrete.unknowns.differential
 
     def point(factor: float, solution: Solution) -> _Point:
         history, slips, _ = model.memory(solution.x, solution.inputs)
@@ -160,16 +156,13 @@ def follow_friction_path(
     step = settings.first
     while outcome is None:
         before = points[-1]
-        step = min(step, settings.load_factor_change, WITHIN * _foretold(points, settings.longest))
-        factor = min(before.factor + step, 1.0)
-        if 1.0 - factor < SHORTEST:
-            factor = 1.0
+        factor = next_factor(settings, step, [(point.factor, point.solution.x[places]) for point in points[-2:]])
         inputs = moved.inputs(factor)
         inputs[memory] = before.history
         found = _equilibrium(model, inputs, [point.solution for point in points[-2:]], settings.longest)
         if found is not None:
             points.append(point(factor, found))
-            step *= GROWTH
+            step = GROWTH * (factor - before.factor)
         else:
             step = (factor - before.factor) / 2
         if progress is not None:

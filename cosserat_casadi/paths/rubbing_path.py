@@ -30,7 +30,7 @@ from cosserat_casadi.paths.contact_curve import Arrangement
 from cosserat_casadi.paths.contact_path import ContactPath, Guard, Travel, beginning, path_contact, record
 from cosserat_casadi.paths.contact_transitions import ArrangementEntry
 from cosserat_casadi.paths.equilibrium_path import InputChange, PathContact, PathEvent, path_along
-from cosserat_casadi.paths.friction_path import SHORTEST, WITHIN, foretold_increment
+from cosserat_casadi.paths.friction_path import SHORTEST, next_factor
 from cosserat_casadi.paths.margins import Watch
 from cosserat_casadi.paths.rubbing_equations import (
     AXES,
@@ -290,10 +290,8 @@ class RubbingTravel(Travel):
         self.step = self.step or self.settings.first
         while traced.outcome is None and guard.crossed is None:
             last = traced.points[-1]
-            step = min(self.step, self.settings.load_factor_change, WITHIN * self._foretold(traced.points))
-            factor = min(last.load_factor + step, 1.0)
-            if 1.0 - factor < SHORTEST:
-                factor = 1.0
+            shapes = [(point.load_factor, self._shape(point.x)) for point in traced.points[-2:]]
+            factor = next_factor(self.settings, self.step, shapes)
             end = self._advanced(traced.points, factor, guard)
             self.steps += 1
             if end is None:
@@ -399,23 +397,18 @@ class RubbingTravel(Travel):
             self.arrangements[-1] = arrangement = self.arrangement.changed(stiffness=stiffness)
             for start in starts:
                 x = arrangement.curve.at(start, factor)
-                if x is not None and self._way(last.x, x) <= self.settings.longest:
+                if x is None:
+                    continue
+                way = float(np.linalg.norm(self._shape(x) - self._shape(last.x)))
+                if way <= self.settings.longest:
                     length = last.length + factor - last.load_factor
                     return arrangement.curve.point(np.append(x, factor), last.tangent, length)
         return None
 
-    def _way(self, before: FloatArray, after: FloatArray) -> float:
-        """Change of the shape, in the units of the curve."""
+    def _shape(self, x: FloatArray) -> FloatArray:
+        """The unknowns of the shape, in the units of the curve."""
         model = self.arrangement.equations.nominal.model
-        return float(np.linalg.norm((after - before)[: model.size][model.discrete.unknowns.differential]))
-
-    def _foretold(self, points: list[ArcPoint]) -> float:
-        """The :func:`foretold_increment` after the last two points; infinite for one point."""
-        if len(points) < 2:
-            return inf
-        before, last = points[-2:]
-        way = self._way(before.x, last.x)
-        return foretold_increment(self.settings.longest, way, last.load_factor - before.load_factor)
+        return x[: model.size][model.discrete.unknowns.differential]
 
     def _broken_loose(self, arc: Arc) -> tuple[int, ArcPoint] | None:
         """The first contact that breaks loose in an increment, by its index, and the point where it does."""

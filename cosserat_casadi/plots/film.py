@@ -24,7 +24,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.sections import half_widths_along
 from cosserat_casadi.motion.pose_series import Poses, poses_of, section_poses
 from cosserat_casadi.motion.trajectory import Motion
-from cosserat_casadi.obstacles.capsule import capsule_net
+from cosserat_casadi.obstacles.obstacle import capsule_net
 from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.plots.colours import BODIES, OBSTACLES, actuator_colour, disk_colour, rod_colour
 from cosserat_casadi.plots.scenery import body_corners

@@ -13,8 +13,9 @@ Newton's method starts from the points of ever finer grids until a grid finds no
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -40,6 +41,8 @@ from cosserat_casadi.tubes.tube_solve import (
     solve_at,
     solve_tubes,
 )
+
+Searched = TypeVar("Searched", bound=TubeFunctions)
 
 MOST_TUBES = 4
 """Largest number of tubes for the search, as the starts of Newton's method grow exponentially with it."""
@@ -123,10 +126,12 @@ def all_equilibria(scene: scenes.Scene, values: Values = None) -> TubeEquilibria
         problem = f"the search for all equilibria takes at most {MOST_TUBES} tubes, and the scene has {robot.size}"
         raise SceneError(Problem("tubes", problem, "solve it without --all"))
     # As many steps as one of them needs are a beginning for the others.
-    model = solve_tubes(scene, at).model
-    if isinstance(model, LoadedTubeModel):
-        return _under_loads(model, at)
-    return _without_loads(TubeModel(robot, model.steps), at)
+    steps = solve_tubes(scene, at).model.steps
+    without_loads = _resolved(TubeModel(robot, steps), at, _searched)
+    if not robot.loads:
+        return without_loads
+    starts = without_loads.solutions
+    return _resolved(LoadedTubeModel(robot, steps), at, lambda model, inputs: _under_loads(model, inputs, starts))
 
 
 def tubes_at_rest(
@@ -194,46 +199,42 @@ def stable_tubes(scene: scenes.Scene, values: Values = None) -> TubeSolution:
     return next(iter(all_equilibria(scene, values).stable), solution)
 
 
-def _under_loads(model: LoadedTubeModel, at: FloatArray) -> TubeEquilibria:
-    """Follow the equilibria without loads to equilibria under loads."""
-    robot = model.robot
-    without = _without_loads(model.without_loads, at)
+Search = tuple[list[FloatArray], bool]
+"""Unknowns of each equilibrium of a model, shape (size,), and whether the search settled."""
+
+
+def _resolved(model: Searched, at: FloatArray, search: Callable[[Searched, FloatArray], Search]) -> TubeEquilibria:
+    """Find equilibria by a search of a model, or of finer ones until all equilibria are within tolerance."""
     while True:
-        finer = LoadedTubeModel(robot, 2 * model.steps)
-        reached = [loaded_from(model, at, start) for start in without.solutions]
-        solutions: list[TubeSolution] = []
-        for solution in reached:
-            if solution.converged and all(_differ(solution, known) for known in solutions):
-                solutions.append(_refined(model, finer, at, solution.x))
-        if finer.steps >= MOST_STEPS or all(solution.converged for solution in solutions):
-            by_energy = sorted(solutions, key=lambda solution: solution.energy)
-            return TubeEquilibria(robot, tuple(by_energy), complete=False)
-        model = finer
-
-
-def _differ(one: TubeSolution, other: TubeSolution) -> bool:
-    """Whether two equilibria under loads differ; a quaternion and its opposite are one frame."""
-    size = one.robot.size
-    sign = np.sign(one.x[size:] @ other.x[size:])
-    turned = np.abs(one.angles - other.angles)
-    others = np.abs(one.x[size:] - sign * other.x[size:])
-    return bool(np.concatenate([turned, others]).max() > SAME)
-
-
-def _without_loads(model: TubeModel, at: FloatArray) -> TubeEquilibria:
-    """Find every equilibrium of tubes without loads, beginning with a given model."""
-    robot = model.robot
-    while True:
-        angles, settled = _searched(model, at)
-        finer = TubeModel(robot, 2 * model.steps)
-        solutions = [_refined(model, finer, at, x) for x in angles]
+        found, settled = search(model, at)
+        finer = type(model)(model.robot, 2 * model.steps)
+        solutions = [_refined(model, finer, at, x) for x in found]
         # More steps would find the same ones again, and no others.
         resolved = all(solution.converged for solution in solutions)
         if resolved or finer.steps >= MOST_STEPS:
             complete = settled and resolved and _is_whole(solutions)
             by_energy = sorted(solutions, key=lambda solution: solution.energy)
-            return TubeEquilibria(robot, tuple(by_energy), complete)
+            return TubeEquilibria(model.robot, tuple(by_energy), complete)
         model = finer
+
+
+def _under_loads(model: LoadedTubeModel, at: FloatArray, starts: Sequence[TubeSolution]) -> Search:
+    """Follow the equilibria without loads to equilibria under loads, which need not be all."""
+    found: list[TubeSolution] = []
+    for start in starts:
+        end = loaded_from(model, at, start)
+        if end.converged and all(_differ(end, known) for known in found):
+            found.append(end)
+    return [solution.x for solution in found], False
+
+
+def _differ(one: TubeSolution, other: TubeSolution) -> bool:
+    """Whether two equilibria differ; a quaternion and its opposite are one frame."""
+    size = one.robot.size
+    sign = np.sign(one.x[size:] @ other.x[size:])
+    turned = np.abs(one.angles - other.angles)
+    others = np.abs(one.x[size:] - sign * other.x[size:])
+    return bool(np.concatenate([turned, others]).max() > SAME)
 
 
 def _refined(model: TubeFunctions, finer: TubeFunctions, inputs: FloatArray, x: FloatArray) -> TubeSolution:
@@ -245,18 +246,12 @@ def _refined(model: TubeFunctions, finer: TubeFunctions, inputs: FloatArray, x: 
 
 def _is_whole(solutions: list[TubeSolution]) -> bool:
     """Whether equilibria differ, and the signs of their determinants sum to one."""
-    for one, other in itertools.combinations(solutions, 2):
-        if np.abs(one.x - other.x).max() < SAME:
-            return False
-    return _degree(solution.stability.determinant for solution in solutions) == 1
+    differ = all(_differ(one, other) for one, other in itertools.combinations(solutions, 2))
+    return differ and _degree(solution.stability.determinant for solution in solutions) == 1
 
 
 def _degree(determinants: Iterator[float]) -> int:
     return int(sum(np.sign(determinant) for determinant in determinants))
-
-
-Search = tuple[list[FloatArray], bool]
-"""Angles at the tips of each equilibrium of a model, shape (n,), rad, and whether the search settled."""
 
 
 def _searched(model: TubeModel, inputs: FloatArray) -> Search:
