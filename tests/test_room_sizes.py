@@ -21,7 +21,7 @@ LINES = {
     "constraints": 1_030,
     "control": 2_805,
     "environments": 330,
-    "equilibrium": 8_115,
+    "equilibrium": 8_170,
     "estimation": 1_730,
     "identification": 4_645,
     "loads": 2_365,
