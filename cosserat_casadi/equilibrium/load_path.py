@@ -23,6 +23,9 @@ from cosserat_casadi.numerics.continuation import ContinuationSettings, Path
 FIRST_STEP = 0.25
 """Longest first step of an assembly with floating frames: the compliance falls to (3/4)³ in it."""
 
+PACE = 3
+"""Power p of t = 1 − (1 − s)^p on a path whose steps the shape alone bounds."""
+
 
 def continuation_limits(model: SystemFunctions) -> ContinuationSettings:
     """Limits of a continuation: beside smooth obstacles steps are so short that sections move nearly straight.
@@ -74,6 +77,31 @@ def backwards(path: Path, end: FloatArray) -> Path:
         rate=lambda x, t: -path.rate(x, 1.0 - t),
         start=end,
         tangent=None,
+    )
+
+
+def paced_by_shape(path: Path, model: Model) -> Path:
+    """A path with steps that the change of shape alone bounds, ever shorter in t towards its end: t = 1 − (1 − s)³.
+
+    The tension of a rod that a support stretches grows as 1/(1 − t), to many times EI/ℓ² in a taut wire. Steps that
+    this tension bounds too do not reach t = 1.
+    """
+    shape = model.discrete.unknowns.differential
+
+    def load_factor(s: float) -> float:
+        return 1.0 - (1.0 - s) ** PACE
+
+    def growth(s: float) -> float:
+        return PACE * (1.0 - s) ** (PACE - 1)
+
+    return replace(
+        path,
+        residual=lambda x, s: path.residual(x, load_factor(s)),
+        jacobian=lambda x, s: path.jacobian(x, load_factor(s)),
+        rate=lambda x, s: growth(s) * path.rate(x, load_factor(s)),
+        tangent=None if path.tangent is None else PACE * path.tangent,
+        step_weights=model.step_weights * shape,
+        first_step=path.first_step / PACE,
     )
 
 

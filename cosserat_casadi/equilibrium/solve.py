@@ -19,7 +19,14 @@ from cosserat_casadi.equilibrium.contact.contact_equations import Grids
 from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.judge import correct, judge
-from cosserat_casadi.equilibrium.load_path import backwards, column, continuation_limits, input_path, load_path
+from cosserat_casadi.equilibrium.load_path import (
+    backwards,
+    column,
+    continuation_limits,
+    input_path,
+    load_path,
+    paced_by_shape,
+)
 from cosserat_casadi.equilibrium.locking import with_locking_note
 from cosserat_casadi.equilibrium.relax import can_relax, relaxed
 from cosserat_casadi.equilibrium.smooth_passage import (
@@ -39,10 +46,11 @@ from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.model.parameters import parameter_layout
 from cosserat_casadi.model.system_functions import SystemFunctions
-from cosserat_casadi.numerics.continuation import ContinuationResult, ContinuationSettings, follow
+from cosserat_casadi.numerics.continuation import ContinuationResult, ContinuationSettings, Path, follow
 from cosserat_casadi.numerics.newton import NewtonResult, relative_norm
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress
+from cosserat_casadi.scene.rod_records import STRAINS
 
 CANNOT_RELAX = " The search for less energy takes no assemblies, free rods and cables of given length."
 """Sentence in the message of a solution that cannot be relaxed."""
@@ -58,6 +66,9 @@ AT_ONCE = " The start has other parameters, and rods would pass through an obsta
 
 NOTHING = 1e-14
 """Relative norm of a residual that is rounding alone, as that of the unloaded scene without loads is."""
+
+NEARLY_LOADED = 0.99
+"""Load factor beyond which a stalled path may be one that pulls a rod taut."""
 
 Start = Solution | FloatArray | None
 """Start of a solve: a solution, unknowns, or None for the unloaded rod."""
@@ -362,9 +373,23 @@ def _continuation(task: _Task) -> _End:
     inputs = (first, task.model.inputs.nearer(first, task.inputs))
     path = past_no_obstacle(path, task.model, inputs, before_it=task.places_of_start)
     result = follow(path, task.limits, task.progress)
+    stalled = result.outcome is Outcome.LOAD_STALLED
+    if stalled and not isinstance(task.start, Solution) and result.reached > NEARLY_LOADED:
+        result = _stretched(task, path, result)
     if result.outcome is not Outcome.CONVERGED:
         result = _with_parameters(task, result)
     return _End(result.x, result.outcome, result.iterations, result.reached)
+
+
+def _stretched(task: _Task, path: Path, failed: ContinuationResult) -> ContinuationResult:
+    """The end of a load path that stretches rods, where the shape alone bounds its steps; else the failed end."""
+    # The tension of a rod that cannot extend may grow without bound, and the residual counts relative to it.
+    extend = all(STRAINS.index("extension") in rod.admitted for rod in task.model.scene.rods)
+    if not extend or all(task.model.discrete.unknowns.differential):
+        return failed
+    result = follow(paced_by_shape(path, task.model), task.limits, task.progress)
+    iterations = failed.iterations + result.iterations
+    return replace(result if result.outcome is Outcome.CONVERGED else failed, iterations=iterations)
 
 
 def _with_parameters(task: _Task, failed: ContinuationResult) -> ContinuationResult:

@@ -38,6 +38,25 @@ def test_a_rod_that_may_extend_sags() -> None:
     assert solution.pose(0.5).position[0] > 0
 
 
+def test_a_string_tuned_to_many_times_its_bending_stiffness_is_found() -> None:
+    """Half a stiff string, EI w''' - T w' = -F/2 with level ends, has w = F/(4T) (L - 4/k tanh(kL/4)), k² = T/EI."""
+    length, stretched, force = 0.65, 0.652, 0.2
+    bending, axial = 6e-3, 4e4
+    string = rod(["bending_y", "extension"], length=length, base={"position": [0, 0, 0], "tangent": [0, 0, 1]})
+    string["stiffness"] = {"bending_y": bending, "extension": axial}
+    pluck = {"name": "pluck", "kind": "point_wrench", "rod": "rod", "at": 0.5, "force": [force, 0, 0]}
+    bridge = {"rod": "rod", "kind": "clamped", "position": [0, 0, stretched], "tangent": [0, 0, 1]}
+    given = scene(pluck, rods=[string], supports=[bridge])
+    solution = solve(build(given, discretise(given, 14, 30)))
+    assert solution.converged, solution.message
+    assert solution.stable
+
+    tension = axial * (stretched / length - 1)
+    k = np.sqrt(tension / bending)
+    deflection = force / (4 * tension) * (stretched - 4 / k * np.tanh(k * stretched / 4))
+    np.testing.assert_allclose(solution.pose(0.5).position[0], deflection, rtol=3e-4)
+
+
 def test_a_rod_held_nearer_is_not_taut() -> None:
     given = held("pinned", 0.9 * LENGTH, "planar")
     model = build(given, discretise(given, 4, 10))
