@@ -229,7 +229,7 @@ BAD = [
     ("gravity_missing", load("kind = 'gravity'"), "loads[0].acceleration", "missing"),
     ("gravity_dangling", load(GRAVITY + "\nrods = ['finger', 'toe']"), "loads[0].rods[1]", "no rod is named 'toe'"),
     ("gravity_twice", load(GRAVITY + "\nrods = ['finger', 'finger']"), "loads[0].rods[1]", "listed twice"),
-    ("gravity_nowhere", load(GRAVITY + "\nrods = []"), "loads[0].rods", "at least one"),
+    ("gravity_nowhere", load(GRAVITY + "\nrods = []"), "loads[0].rods", "or leave the key out"),
     ("gravity_without_density", material("youngs_modulus = 1, shear_modulus = 1") + f"[[loads]]\nname = 'g'\n{GRAVITY}",
      "rods[0].material.density", "missing"),
     ("gravity_without_mass", stiffness("bending_y = 1", '"planar"') + f"[[loads]]\nname = 'g'\n{GRAVITY}",
