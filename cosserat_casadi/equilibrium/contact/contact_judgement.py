@@ -88,7 +88,7 @@ def contacts_of(found: ContactEquilibrium) -> tuple[Contact, ...]:
         zero = max(PRESSING * found.largest_force, _rounding(touch))
         # A pull that is rounding alone counts as zero.
         forces = unit * np.where((carried < 0.0) & (carried > -zero), 0.0, carried)
-        total = forces @ _normals(found, touch) + _friction(found, touch)
+        total = unit * carried @ _normals(found, touch) + _friction(found, touch)
         if touch.is_line:
             total = total + unit * _resultant(found, touch, found.placed.obstacle(touch.obstacle), line)
         ends, sections = touch.sorted_forces(forces)
