@@ -55,9 +55,7 @@ def decision_variables(model: SystemFunctions) -> DecisionVariables:
     layout = model.inputs
     chosen = _chosen_names(model)
     if not chosen:
-        remedy = (
-            "add a load or an actuator, list inputs such as a rod's base.position, or give each its range in [[bounds]]"
-        )
+        remedy = "add a load or an actuator, list inputs, such as a rod's base.position, or give them [[bounds]]"
         raise SceneError(Problem("inputs", "no input is left to find", remedy))
     lower, upper = narrowed(layout, model.scene.bounds)
     least = [(i, bound, lower[layout.slices[bound.input]]) for i, bound in enumerate(model.scene.bounds)]
