@@ -50,6 +50,8 @@ def check_writable(path: Path, option: str, *, folder: bool = False) -> None:
     if target.is_symlink():
         raise SceneError(Problem(option, f"{path} is a link that leads to itself", "remove it, or name another file"))
     parent = target.parent
+    if parent.exists() and not parent.is_dir():
+        raise SceneError(Problem(option, f"{parent} is a file, not a folder", "name another folder"))
     if not parent.is_dir():
         raise SceneError(Problem(option, f"the folder {parent} does not exist", "make it first"))
     if not os.access(parent, os.W_OK):

@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.equilibrium.contact.contact_state import given_entries
+from cosserat_casadi.equilibrium.contact.contact_state import given_entries, given_names
 from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.input_bounds import narrowed
 from cosserat_casadi.model.system_functions import SystemFunctions
+from cosserat_casadi.scene.load_records import Gravity
 
 UNFELT = 1e-9
 """Derivative of the residual by an input, over the largest one, below which it does not set the scale."""
@@ -45,15 +46,16 @@ def decision_variables(model: SystemFunctions) -> DecisionVariables:
     """Choose the decision variables of a scene: the inputs that it bounds, or else the inputs that it lists.
 
     If a scene bounds some inputs, a listed input without bounds keeps the scene's value: it is listed for a controller,
-    such as a payload. For any bounds, tensions are at least zero, and lengths at least a thousandth of the scene's.
+    such as a payload. If it neither bounds nor lists inputs, all magnitudes of loads and actuators may change, but
+    gravity. For any bounds, tensions are at least zero, and lengths at least a thousandth of the scene's.
 
     Raises:
-        SceneError: the scene lists no inputs and bounds none.
+        SceneError: the scene lists no inputs and bounds none, and has no load or actuator but gravity.
     """
     layout = model.inputs
     chosen = _chosen_names(model)
     if not chosen:
-        remedy = "list them in inputs, or give each its range in [[bounds]]"
+        remedy = "add a load or an actuator, list inputs, such as a rod's base.position, or give them [[bounds]]"
         raise SceneError(Problem("inputs", "no input is left to find", remedy))
     lower, upper = narrowed(layout, model.scene.bounds)
     least = [(i, bound, lower[layout.slices[bound.input]]) for i, bound in enumerate(model.scene.bounds)]
@@ -93,10 +95,12 @@ def scales(model: SystemFunctions, variables: DecisionVariables, start: Equilibr
 def _chosen_names(model: SystemFunctions) -> list[str]:
     """Names of the decision variables, in the order of the stacked inputs."""
     scene = model.scene
-    changeable = tuple(bound.input for bound in scene.bounds)
-    if not changeable and scene.inputs is not None:
-        changeable = scene.inputs
-    return [name for name in model.inputs.names if name in changeable]
+    changeable = tuple(bound.input for bound in scene.bounds) or scene.inputs
+    if changeable is not None:
+        return [name for name in model.inputs.names if name in changeable]
+    weights = {load.name for load in scene.loads if isinstance(load, Gravity)}
+    free = given_names(model)
+    return [entry.name for entry, _ in model.inputs if entry.name in free and entry.owner not in weights]
 
 
 def _own_sizes(model: SystemFunctions, inputs: FloatArray) -> FloatArray:

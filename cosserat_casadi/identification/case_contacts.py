@@ -207,8 +207,11 @@ class ContactEquilibria(Equilibria):
         kept: dict[object, ContactEquations] = kept_with(self.model, "_contact_equations", dict)
         scene = self.model.at(p).scene
         sections = load_sections(scene)
-        # Parameters may move seams; their order stays.
-        seams = [[sections[touch.owner].index(seam) for seam in touch.seams] for touch in state.touches]
+        # Parameters may move seams at loads; their order stays. Seams at other contacts move with those.
+        seams = [
+            [sections[touch.owner].index(seam) if seam in sections[touch.owner] else None for seam in touch.seams]
+            for touch in state.touches
+        ]
         kind = (state.signature, *map(tuple, seams))
         for equations in [kept.get(kind), self._equations(state, scene)]:
             if equations is None:

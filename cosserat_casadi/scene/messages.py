@@ -192,11 +192,15 @@ def problem_of(fault: Fault, applied: Sequence[Assignment]) -> Problem:
     where = _dotted(fault.path).removeprefix(".")
     # The last override of a key, which is first in the list, counts.
     for assignment in applied:
-        depth = len(assignment.created)
-        if fault.path[:depth] == assignment.created:
-            beyond = fault.path[len(assignment.leaf) :]
-            where = f"--set {printable(assignment.key)}{_dotted(beyond)}"
+        depth = len(assignment.leaf)
+        option = f"--set {printable(assignment.key)}"
+        if fault.path[:depth] == assignment.leaf or assignment.created == fault.path:
+            where = f"{option}{_dotted(fault.path[depth:])}"
             break
+        if fault.path[: len(assignment.created)] == assignment.created:
+            # Another key of a table that the override has created.
+            remedy = f"{option} begins this table"
+            return Problem(where, fault.problem, f"{fault.remedy}; {remedy}" if fault.remedy else remedy)
     return Problem(where, fault.problem, fault.remedy)
 
 

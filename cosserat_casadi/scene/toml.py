@@ -67,6 +67,10 @@ def _too_large(where: str, size: int) -> Problem:
     return Problem(where, f"is {megabytes:.1f} MB; a scene is at most 1 MB")
 
 
+WRITTEN_TWICE = "a key, or a table, stands twice; each entry of a list has its own [[…]], as in [[loads]]"
+"""Remedy for keys that TOML cannot declare or overwrite."""
+
+
 def parsed(text: str) -> dict[str, Any]:
     """Parse TOML text.
 
@@ -108,4 +112,4 @@ def _syntax_problem(message: str) -> Problem:
     if parts is None:
         return Problem("", "is not TOML: a number in it is beyond all range")
     problem, position = parts.groups()
-    return Problem(position, f"is not TOML: {problem}")
+    return Problem(position, f"is not TOML: {problem}", WRITTEN_TWICE if problem.startswith("Cannot") else "")

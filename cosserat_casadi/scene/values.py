@@ -56,7 +56,10 @@ def listed(count: int, what: str) -> BeforeValidator:
 
 
 class NotEmpty:
-    """Refuse empty lists: pydantic's own bound does not count faulty entries."""
+    """Refuse empty lists, with a remedy: pydantic's own bound does not count faulty entries."""
+
+    def __init__(self, remedy: str = "") -> None:
+        self._remedy = remedy
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_before_validator_function(self._check, handler(source))
@@ -66,8 +69,7 @@ class NotEmpty:
 
     def _check(self, value: Any) -> Any:
         if isinstance(value, list | tuple) and not value:
-            fault = Fault((), "must have at least one entry")
-            raise refusal([fault])
+            raise refusal([Fault((), "must have at least one entry", self._remedy)])
         return value
 
 
@@ -250,7 +252,12 @@ ABOVE_BASE: Any = Field(json_schema_extra={"exclusiveMinimum": 0, "maximum": 1})
 Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$")]
 BodyName = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*(\[[0-9]+\])?$")]
 """Name of a body, or of an entry of a table that is written as a body: ``spacers[0]``, ``joints[2]``."""
-Names = Annotated[tuple[str, ...], NotEmpty(), AfterValidator(without_repetition)]
+Names = Annotated[
+    tuple[str, ...],
+    NotEmpty("name at least one, or leave the key out for its default"),
+    AfterValidator(without_repetition),
+]
+"""Names of things of the scene, for a key that has a meaning when it is left out."""
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Positive = Annotated[Number, Field(gt=0)]

@@ -97,6 +97,21 @@ def test_check_prices_the_scene(wire: Path) -> None:
     assert sorted(p.name for p in wire.iterdir()) == ["wire.toml"]
 
 
+def test_check_lists_exact_contacts_alike(wire: Path) -> None:
+    other = '[[rods]]\nname = "other"\nlength = 0.1\nstrain = "kirchhoff"\nbase = { position = [0.5, 0, 0] }\n'
+    other += "material = { youngs_modulus = 6e10, poisson_ratio = 0.33 }\n"
+    other += 'section = { shape = "circle", radius = 1e-3 }\n'
+    table = '[[obstacles]]\nname = "table"\nkind = "plane"\npoint = [0, 0, -1]\nnormal = [0, 0, 1]\n'
+    pair = '[[rod_contacts]]\nrods = ["wire", "other"]\nexact = true\n'
+    (wire / "wire.toml").write_text(SCENE + other + table + pair)
+    done = cosserat("check", "wire.toml", cwd=wire)
+    assert done.returncode == 0, done.stderr
+    rows = [line for line in done.stdout.splitlines() if "in contact only" in line]
+    assert len(rows) == 2
+    assert "exact plane" in rows[0]
+    assert "exact contact of" in rows[1]
+
+
 @pytest.mark.slow
 def test_check_lists_parameters_and_solve_takes_their_values(wire: Path) -> None:
     names = '["wire.material.youngs_modulus", "wire.section.radius"]'

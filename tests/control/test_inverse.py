@@ -14,7 +14,7 @@ from cosserat_casadi import Model, Outcome, Scene, SceneError, Solution, build, 
 from cosserat_casadi.scene import scene_from_dict
 from cosserat_casadi.scene.writing import scene_tables
 from tests.conftest import ROOT
-from tests.scenes import push, scene
+from tests.scenes import WEIGHT, push, scene
 
 TENSIONS = ["lower_east.tension", "lower_north.tension", "upper_west.tension", "upper_south.tension"]
 
@@ -261,12 +261,24 @@ def test_a_stable_equilibrium_when_asked() -> None:
     assert not asked.met
 
 
+def test_without_inputs_and_bounds_all_magnitudes_but_gravity_are_found() -> None:
+    pushed = solve(build(scene(WEIGHT, push())), {"push.force": [0.6, 0.7, -0.2]})
+    target = pose_of(pushed, "rod")
+    target = {"kind": "position", "rod": "rod", "position": target["position"]}
+    heavy = build(scene(WEIGHT, push(), targets=[target]))
+    found = inverse(heavy)
+    assert found.met
+    values = heavy.inputs.unpack(found.solution.inputs)
+    assert_allclose(np.ravel(values["weight.acceleration"]), WEIGHT["acceleration"], rtol=0, atol=0)
+    assert_allclose(np.ravel(values["push.force"]), [0.6, 0.7, -0.2], rtol=0, atol=1e-4)
+
+
 def test_refusals() -> None:
     target = {"kind": "position", "rod": "rod", "position": [0, 0, 1]}
     with pytest.raises(SceneError, match=r"targets: missing"):
         inverse(build(scene(push(), inputs=["push.force"])))
     with pytest.raises(SceneError, match="no input is left to find"):
-        inverse(build(scene(push(), targets=[target])))
+        inverse(build(scene(WEIGHT, targets=[target])))
     cable = {"name": "cable", "kind": "tendon", "rod": "rod", "tension": 5.0, "offset": [0.01, 0.0]}
     bounds = [{"input": "cable.tension", "upper": -1.0}]
     with pytest.raises(SceneError, match=r"bounds\[0\].upper: is below 0, the least that cable.tension can be"):

@@ -195,7 +195,7 @@ def test_episode_ends_with_a_sentence_where_a_step_cannot_be_computed(environmen
 @pytest.mark.parametrize(
     ("scene", "rod", "words"),
     [
-        (SCENE, None, "no input is left to find"),
+        (SCENE, None, "flexor.tension has no range"),
         (SCENE + BOUNDS, "arm", "no rod 'arm'"),
         (SCENE + BOUNDS.replace("upper = 1.0", ""), None, "flexor.tension has no range"),
     ],

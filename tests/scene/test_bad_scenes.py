@@ -680,3 +680,26 @@ def test_points_of_a_lumen_with_no_line_through_them_are_refused():
     with pytest.raises(SceneError) as caught:
         scene_from_dict({"schema": 1, "obstacles": [vessel]})
     assert "obstacles[0].points: are 0.1 m apart at the least and 1e+60 m at the most" in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "where", "remedy"),
+    [
+        (load(GRAVITY + "\nrods = []"), "loads[0].rods", "or leave the key out for its default"),
+        ("schema = 1\n[[rods]]\n[rods]\n", "line 3, column 6", "each entry of a list has its own [[…]]"),
+    ],
+)
+def test_a_remedy_says_what_to_write(text: str, where: str, remedy: str) -> None:
+    with pytest.raises(SceneError) as caught:
+        parse_scene(text)
+    (problem,) = caught.value.problems
+    assert problem.where == where
+    assert remedy in problem.remedy
+
+
+def test_a_missing_key_of_a_table_that_an_override_begins_is_named() -> None:
+    with pytest.raises(SceneError) as caught:
+        parse_scene(scene(), ["simulation.step=1e-3"])
+    (problem,) = caught.value.problems
+    assert (problem.where, problem.problem) == ("simulation.duration", "missing")
+    assert problem.remedy.endswith("--set simulation.step begins this table")

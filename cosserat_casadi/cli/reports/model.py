@@ -72,7 +72,7 @@ def print_check(
     scene = model.scene
     console.print(f"{title_line(scene.title)}: the scene is valid.")
     console.print(discretisation_table(model))
-    if of_effects:
+    if scene.causes or scene.obstacles or scene.rod_contacts:
         console.print(_load_table(model, of_effects))
     _print_varying(console, varying)
     _print_parameters(console, model)
@@ -249,10 +249,15 @@ def _load_table(model: Model, of_effects: Mapping[str, Count]) -> Table:
         free_inputs = ", ".join(fields) or "none"
         table.add_row(escape(cause.name), cause.kind, free_inputs, f"{of_effects[cause.name]} operations")
     for obstacle in model.scene.obstacles:
-        if obstacle.is_smooth:
-            cost = of_effects[obstacle.name]
-            table.add_row(escape(obstacle.name), f"smooth {obstacle.kind}", "none", f"{cost} operations")
+        _add_contact(table, obstacle.name, obstacle.kind, of_effects[obstacle.name] if obstacle.is_smooth else None)
     for contact in model.scene.rod_contacts:
-        cost = of_effects[contact.label]
-        table.add_row(escape(contact.label), "contact of rods", "none", f"{cost} operations")
+        _add_contact(table, contact.label, "contact of rods", None if contact.exact else of_effects[contact.label])
     return table
+
+
+def _add_contact(table: Table, name: str, kind: str, cost: Count | None) -> None:
+    """Add a row for an obstacle, or for contact of rods; without a cost the contact is exact."""
+    if cost is None:
+        table.add_row(escape(name), f"exact {kind}", "none", "in contact only")
+    else:
+        table.add_row(escape(name), f"smooth {kind}", "none", f"{cost} operations")

@@ -105,17 +105,23 @@ class _Met:
         """
         touches = [touch for state in self.states.values() for touch in state.touches]
         from_base = sorted({(touch.owner, touch.obstacle) for touch in touches if touch.starts_at_base})
-        split = sorted({(touch.owner, touch.obstacle, X) for touch in touches for X in touch.seams})
+        lines = [(state, touch) for state in self.states.values() for touch in state.touches if touch.is_line]
+        split: dict[tuple[str, str, float], tuple[str, str]] = {}
+        for state, touch in lines:
+            others = {end: other.obstacle for other in state.along(touch.owner) for end in other.moving}
+            for X in touch.seams:
+                inside = ("obstacles", f"contact with {others[X]!r}") if X in others else ("loads", "a load or joint")
+                split[touch.owner, touch.obstacle, X] = inside
         problems = []
         for rod, obstacle in from_base:
             problem = f"it lies on {obstacle!r} from its base on: C has no such line of contact"
             problems.append(Problem(f"rods.{rod}", problem, "give the obstacle a width, m, or move it off the base"))
-        for rod, obstacle, X in split:
+        for (rod, obstacle, X), (where, inside) in sorted(split.items()):
             problem = (
-                f"a load or joint at {X:g} of {rod!r} is inside the line along which it touches {obstacle!r}: C has no "
+                f"{inside} at {X:g} of {rod!r} is inside the line along which it touches {obstacle!r}: C has no "
                 "such contact"
             )
-            problems.append(Problem("loads", problem, "give each obstacle a width, m, for a contact that is smooth"))
+            problems.append(Problem(where, problem, "give each obstacle a width, m, for a contact that is smooth"))
         count = len(self.states)
         if not problems and count > MOST_ARRANGEMENTS:
             problem = f"the load cases meet {count} arrangements of contacts, a library holds {MOST_ARRANGEMENTS}"

@@ -51,8 +51,8 @@ static int is_place_of(const penetration *inside, const touch *contact) {
 }
 
 /* Error of poses, places and forces because contacts hold only to a tolerance; the nodes stand in the workspace. It
-   counts depth and angle of stretches inside obstacles beside lines of contact, their length beyond points of contact,
-   and forces that pull. */
+   counts depth and angle of stretches inside obstacles beside lines of contact, their length beyond points of contact and
+   between two, and forces that pull. */
 static real unmet(const arrangement *at, const real *z, workspace *work) {
   penetration found[MOST_FAULTS];
   const real largest = largest_force(at, z);
@@ -75,7 +75,10 @@ static real unmet(const arrangement *at, const real *z, workspace *work) {
     }
     if (along) continue;
     off = larger(off, larger(found[i].depth, left ? 0 : found[i].angle));
-    if (first <= last && !lines) off = larger(off, larger(first - found[i].start, found[i].end - last));
+    if (first <= last && !lines) {
+      off = larger(off, larger(first - found[i].start, found[i].end - last));
+      off = larger(off, smaller(found[i].end, last) - larger(found[i].start, first));
+    }
   }
   return off;
 }

@@ -109,7 +109,9 @@ def _extents(solution: Solution) -> dict[tuple[str, str, bool], tuple[float, flo
 
 
 def _between_sections(first: Contact, second: Contact) -> list[float]:
-    """Differences of the forces at sections inside two lines, N."""
+    """Differences of the forces at sections inside two lines, N; sections at other contacts move a little."""
+    if len(first.inside) == len(second.inside):
+        return [abs(one.force - other.force) for one, other in zip(first.inside, second.inside, strict=True)]
     forces = {section.at: section.force for section in first.inside}
     other_forces = {section.at: section.force for section in second.inside}
     places = forces.keys() | other_forces.keys()

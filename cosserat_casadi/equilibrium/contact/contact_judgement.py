@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from math import inf
 
 import numpy as np
 
@@ -36,6 +37,9 @@ FLAT = 1e-6
 
 PRESSING = 1e-9
 """Force, relative to the largest, above which a contact counts as a constraint."""
+
+ROUNDED_GAP = 1e-16
+"""Rounding of a gap, relative to the length of the rod."""
 
 
 def judged(found: ContactEquilibrium, *, holds: bool, iterations: int, tolerance: float) -> Solution:
@@ -81,10 +85,10 @@ def contacts_of(found: ContactEquilibrium) -> tuple[Contact, ...]:
     contacts = []
     for touch, carried, line in found.parts():
         unit = found.placed.model.discrete.contact_unit(touch.owner, of_body=touch.of_body)
-        zero = PRESSING * found.largest_force
+        zero = max(PRESSING * found.largest_force, _rounding(touch))
         # A pull that is rounding alone counts as zero.
         forces = unit * np.where((carried < 0.0) & (carried > -zero), 0.0, carried)
-        total = forces @ _normals(found, touch) + _friction(found, touch)
+        total = unit * carried @ _normals(found, touch) + _friction(found, touch)
         if touch.is_line:
             total = total + unit * _resultant(found, touch, found.placed.obstacle(touch.obstacle), line)
         ends, sections = touch.sorted_forces(forces)
@@ -104,6 +108,15 @@ def contacts_of(found: ContactEquilibrium) -> tuple[Contact, ...]:
             )
         )
     return tuple(contacts)
+
+
+def _rounding(touch: Touch) -> float:
+    """Force at a section of a line that rounding leaves open, without unit; 0 for a point.
+
+    At the end of a stretch of the width w a force F bends the rod by about F w³/3.
+    """
+    narrowest = min((end - start for start, end in touch.stretches), default=inf)
+    return 3 * ROUNDED_GAP / float(narrowest) ** 3
 
 
 def _friction(found: ContactEquilibrium, touch: Touch) -> FloatArray:

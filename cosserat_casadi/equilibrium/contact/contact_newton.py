@@ -53,11 +53,12 @@ def sought(equations: ContactEquations, start: FloatArray, settings: NewtonSetti
         norm = relative_norm(residual, z)
         if not np.isfinite(norm):
             break
-        if least <= settings.tolerance and norm >= 0.5 * least:
-            # Only rounding is left.
+        if max(least, norm) <= settings.tolerance and norm >= 0.5 * least:
+            # Only rounding is left; forces that change much may enlarge a small residual once.
             break
-        best = z
-        least = norm
+        if least > settings.tolerance or norm < least:
+            best = z
+            least = norm
         if _widths(equations, z).min() < COLLAPSED:
             break
         step = solved(equations.jacobian(z, equations.given), -residual)

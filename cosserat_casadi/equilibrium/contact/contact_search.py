@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from math import inf
 
 import numpy as np
@@ -36,6 +36,7 @@ from cosserat_casadi.equilibrium.contact.gaps import (
     body_pairs,
     gap_along,
     lies_at_base,
+    normals,
     obstacle_of,
     pairs,
     rod_pairs,
@@ -65,6 +66,9 @@ ALIKE = 0.05
 
 SHALLOW = 1e-12
 """Depth, relative to the length, that is rounding beside a point of contact."""
+
+INDEPENDENT = 0.1
+"""Sine of the angle between the normals of two obstacles above which a rod may touch both at one section."""
 
 SAMPLES = np.linspace(0.0, 1.0, 41)
 """Number of places along a stretch at which its force per length is evaluated."""
@@ -194,16 +198,9 @@ class ContactEquilibrium:
         beyond it. If points approximate a line of contact there, they should be at the ends of the stretch. A contact
         that pulls has its force as error. The depth along a line is an error of the modes.
         """
-        off = [0.0, *(pull * self.largest_force for _, pull in self.pulls())]
-        for penetrated in self.penetrations(SHALLOW):
-            touches = [touch for touch in self.state.touches if penetrated.concerns(touch)]
-            if any(penetrated.is_along(touch) for touch in touches):
-                continue
-            off += [penetrated.depth, penetrated.angle]
-            if touches and not any(touch.is_line for touch in touches):
-                off.append(min(touch.start for touch in touches) - penetrated.start)
-                off.append(penetrated.end - max(touch.end for touch in touches))
-        return max(off)
+        pulls = [pull * self.largest_force for _, pull in self.pulls()]
+        entered = [penetrated.error(self.state.touches) for penetrated in self.penetrations(SHALLOW)]
+        return max([0.0, *pulls, *entered])
 
 
 @dataclass(frozen=True)
@@ -248,6 +245,19 @@ class Penetrated:
         """Whether a contact has the rod, or body, and the obstacle of this stretch."""
         return (touch.owner, touch.obstacle, touch.of_body) == (self.owner, self.obstacle, self.of_body)
 
+    def error(self, touches: Sequence[Touch]) -> float:
+        """Bound on the error of poses and places because the stretch is inside, beside the contacts of its state."""
+        own = [touch for touch in touches if self.concerns(touch)]
+        if any(self.is_along(touch) for touch in own):
+            return 0.0
+        off = [self.depth, self.angle]
+        if own and not any(touch.is_line for touch in own):
+            # Points should be at the ends of the stretch, and none of it is between two points that suffice.
+            first = min(touch.start for touch in own)
+            last = max(touch.end for touch in own)
+            off += [first - self.start, self.end - last, min(self.end, last) - max(self.start, first)]
+        return max(off)
+
     def is_at(self, touch: Touch) -> bool:
         """Whether the stretch is next to a contact."""
         return bool(self.concerns(touch) and touch.start - NEAR <= self.end and self.start <= touch.end + NEAR)
@@ -278,6 +288,7 @@ class Settling:
         grids: modes and nodes of every element.
         newton: limits of the solve of each state.
         tolerance: depth and pull, relative, up to which a state holds.
+        error: error of places and poses up to which a state holds whose depth is within the tolerance.
         iterations: Newton steps so far.
         squeezed: the contacts of the last state that was not solved, at their last places; None if all were solved.
     """
@@ -287,6 +298,7 @@ class Settling:
     grids: Grids
     newton: NewtonSettings
     tolerance: float
+    error: float = inf
     iterations: int = 0
     squeezed: ContactState | None = None
 
@@ -312,7 +324,8 @@ class Settling:
         last: ContactEquilibrium | None = None
         while waiting and len(tried) < MOST_STATES:
             candidate, start = waiting.pop(0)
-            candidate = candidate.apart.split(self.sections)
+            candidate = candidate.apart(partial(_press_apart, start))
+            candidate = candidate.split(self.sections).seamed
             if not candidate.in_order or any(self._alike(candidate, other) for other in tried):
                 continue
             if any(touch.starts_at_base and not _lies_at_base(start, touch) for touch in candidate.touches):
@@ -325,7 +338,7 @@ class Settling:
                 waiting = [(other, start) for other in beyond] + waiting
                 waiting += [(other, start) for other in otherwise(candidate, self.sections)]
                 continue
-            others = list(next_states(found, self.tolerance))
+            others = list(next_states(found, self.tolerance, self.error))
             if not others and not admits(found.solution):
                 continue
             last = found
@@ -338,7 +351,9 @@ class Settling:
     def _alike(self, first: ContactState, second: ContactState) -> bool:
         """Whether two states are the same attempt; beside a section with a load small differences matter."""
         if first.signature != second.signature or any(
-            one.seams != other.seams for one, other in zip(first.touches, second.touches, strict=True)
+            set(one.seams).symmetric_difference(other.seams) & set(self.sections[one.owner])
+            for one, other in zip(first.touches, second.touches, strict=True)
+            if one.is_line
         ):
             return False
         beside = [
@@ -443,11 +458,17 @@ class Replacement:
     options: tuple[tuple[Touch, ...], ...]
 
 
-def next_states(found: ContactEquilibrium, tolerance: float) -> Iterator[ContactState]:
-    """States to try instead of a state at fault, the likeliest first; none for a state that holds."""
+def next_states(found: ContactEquilibrium, tolerance: float, error: float = inf) -> Iterator[ContactState]:
+    """States to try instead of a state at fault, the likeliest first; none for a state that holds.
+
+    Args:
+        found: the state.
+        tolerance: depth and pull up to which a state holds.
+        error: error of a stretch inside an obstacle up to which a state holds, however shallow the stretch is.
+    """
     pulling = [touch for touch, pull in found.pulls() if pull > tolerance]
     changes = [Replacement(touch, tuple(_where_it_opens(found, touch))) for touch in pulling]
-    for penetrated, touch in _by_touch(found, tolerance):
+    for penetrated, touch in _by_touch(found, tolerance, error):
         # No change of the state mends a depth inside a line.
         if touch is not None and penetrated.is_along(touch):
             continue
@@ -470,15 +491,30 @@ def next_states(found: ContactEquilibrium, tolerance: float) -> Iterator[Contact
             yield _changed(found.state, [*others, (change.touch, option)])
 
 
+def _press_apart(solution: Solution, one: Touch, other: Touch) -> bool:
+    """Whether a rod that bends to all sides may touch two obstacles at one section: their normals are independent."""
+    if one.rods != (one.owner,) or other.rods != one.rods or one.obstacle == other.obstacle:
+        return False
+    scene = solution.model.scene
+    (rod,) = [rod for rod in scene.rods if rod.name == one.owner]
+    if not {0, 1} <= set(rod.admitted):
+        return False
+    X = np.array([max(one.start, other.start)])
+    first, second = (normals(solution, rod.name, obstacle_of(scene, touch.obstacle), X)[0] for touch in (one, other))
+    return bool(np.linalg.norm(np.cross(first, second)) > INDEPENDENT)
+
+
 def _lies_at_base(solution: Solution, touch: Touch) -> bool:
     return lies_at_base(solution, touch.owner, obstacle_of(solution.model.scene, touch.obstacle))
 
 
-def _by_touch(found: ContactEquilibrium, tolerance: float) -> list[tuple[Penetrated, Touch | None]]:
+def _by_touch(found: ContactEquilibrium, tolerance: float, error: float) -> list[tuple[Penetrated, Touch | None]]:
     """Stretches inside an obstacle, each with its adjacent contact; stretches on both sides of one are joined."""
     alone: list[tuple[Penetrated, Touch | None]] = []
     joined: dict[Touch, Penetrated] = {}
-    for penetrated in found.penetrations(tolerance):
+    for penetrated in found.penetrations(min(tolerance, SHALLOW) if error < inf else tolerance):
+        if penetrated.depth <= tolerance and penetrated.error(found.state.touches) <= error:
+            continue
         touch = next((touch for touch in found.state.touches if penetrated.is_at(touch)), None)
         if touch is None:
             alone.append((penetrated, None))

@@ -169,8 +169,9 @@ def _held(
     """Contacts that hold to the tolerance, and whether they hold; see :meth:`Settling.run`.
 
     If points approximate a line and the rod enters the obstacle by less than the tolerance, places have a larger error:
-    the depth is in proportion to its square. Then contacts that hold more closely are sought from there. Few modes
-    leave a depth beside the ends of a line too, which more modes reduce: for fixed modes a solve on richer modes tells.
+    the depth is in proportion to its square, or to its fourth power where the weight of a rod presses it down. Then
+    contacts whose places hold to the tolerance are sought from there. Few modes leave a depth beside contacts too,
+    which more modes reduce: a solve on richer modes tells.
     """
     found, holds = settling.run(guesses, admits)
     if found is None or not holds:
@@ -178,9 +179,9 @@ def _held(
     lies = any(touch.is_line for touch in found.state.touches)
     if not stays_unmet(found, unmet_before if lies else 0.0, settling.tolerance):
         return found, holds
-    if lies and not unmet_before and _more_modes_mend(settling, found, admits):
+    if not (lies and unmet_before) and _more_modes_mend(settling, found, admits):
         return found, holds
-    closer = replace(settling, tolerance=max(settling.tolerance**2, LEAST_TOLERANCE))
+    closer = replace(settling, error=settling.tolerance)
     closest, holds_closer = closer.run([(found.state, found.solution)], admits)
     settling.iterations = closer.iterations
     return (closest if holds_closer else found), True

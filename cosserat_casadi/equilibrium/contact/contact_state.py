@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -269,6 +269,19 @@ class ContactState:
         """These contacts with seams at the sections, given for each rod by name, that are inside them."""
         return ContactState(tuple(touch if touch.of_body else touch.split(sections) for touch in self.touches))
 
+    @property
+    def seamed(self) -> ContactState:
+        """These contacts with seams of lines where the rod begins or ceases to touch another obstacle.
+
+        The force of the other contact may make the force per length of the line jump there.
+        """
+        touches = []
+        for touch in self.touches:
+            beside = [other for other in self.touches if other is not touch and other.rods == (touch.owner,)]
+            ends = {end for other in beside for end in other.moving if touch.start < end < touch.end}
+            touches.append(replace(touch, seams=tuple(sorted({*touch.seams, *ends}))) if touch.is_line else touch)
+        return ContactState(tuple(touches))
+
     def reseamed(self, places: Mapping[str, Mapping[float, Place]]) -> ContactState:
         """These contacts with moved seams, by the old and new places of each rod, by name: numbers or expressions."""
         touches = []
@@ -287,14 +300,19 @@ class ContactState:
         return [touch.on(rod) for touch in self.touches if rod in touch.rods]
 
     def at(self, places: Sequence[Place]) -> ContactState:
-        """These contacts at other places, numbers or expressions."""
+        """These contacts at other places, numbers or expressions; seams at places of other contacts move with them."""
         touches = []
+        moved: dict[str, dict[Place, Place]] = {}
         first = 0
         for touch in self.touches:
             last = first + len(touch.moving)
             touches.append(touch.moved(places[first:last]))
+            if touch.rods:
+                moved.setdefault(touch.owner, {}).update(zip(touch.moving, places[first:last], strict=True))
             first = last
-        return ContactState(tuple(touches))
+        if not any(touch.seams for touch in touches):
+            return ContactState(tuple(touches))
+        return ContactState(tuple(touches)).reseamed(moved)
 
     def with_forces(self, forces: Columns, modes: Mapping[str, int]) -> Iterator[tuple[Touch, Columns, Columns]]:
         """Each contact, the forces at its sections, and the coefficients of the force along it.
@@ -310,24 +328,36 @@ class ContactState:
             yield touch, forces[first:last], forces[last : last + count]
             first = last + count
 
-    @property
-    def apart(self) -> ContactState:
-        """The contacts, but no two of a rod at one section, where the longer or earlier one stays; tips may share."""
+    def apart(self, share: Callable[[Touch, Touch], bool]) -> ContactState:
+        """The contacts, but no two of a rod at one section, where the longer or earlier one stays; tips may share.
+
+        Args:
+            share: whether a section of a rod may have two contacts, since their forces are independent.
+        """
         kept: list[Touch] = []
         for touch in sorted(self.touches, key=lambda touch: touch.start - touch.end):
-            if all(_are_apart(touch, other) for other in kept):
+            if all(_are_apart(touch, other) or share(touch, other) for other in kept):
                 kept.append(touch)
         return ContactState.of(kept)
 
     @property
     def in_order(self) -> bool:
-        """Whether the places of each rod ascend between base and tip, at least a little apart."""
+        """Whether the places of each rod ascend between base and tip, at least a little apart.
+
+        Contacts with two obstacles may overlap; no two have an unknown place in common.
+        """
         for rod in {rod for touch in self.touches for rod in touch.rods}:
-            own = sorted(self.along(rod), key=lambda touch: float(touch.start))
-            ends = [0.0, *(end for touch in own for end in touch.carriers if BASE < end < TIP)]
-            gaps = np.diff(ends)
-            if np.any(gaps < SHORTEST) or ends[-1] > TIP:
+            own = self.along(rod)
+            sought = [end for touch in own for end in touch.moving]
+            inside = {end for touch in own for end in touch.carriers if BASE < end < TIP}
+            gaps = np.diff([BASE, *sorted(inside)])
+            if len(set(sought)) < len(sought) or np.any(gaps < SHORTEST):
                 return False
+            for obstacle in {touch.obstacle for touch in own}:
+                alike = sorted((touch for touch in own if touch.obstacle == obstacle), key=lambda touch: touch.start)
+                ends = [end for touch in alike for end in touch.carriers]
+                if np.any(np.diff(ends) < 0.0) or ends[-1] > TIP:
+                    return False
         return True
 
     def loads(self, scene: scenes.Scene, modes: Mapping[str, int]) -> list[scenes.LoadRecord]:
