@@ -10,7 +10,7 @@ from rich.console import Console
 from cosserat_casadi import build, scene_from_dict
 from cosserat_casadi.cli.reports.model import print_check
 from cosserat_casadi.cli.reports.solution import print_solution
-from cosserat_casadi.model.operation_cost import price
+from cosserat_casadi.model.operation_cost import price, prices_of_effects
 from tests.equilibria import solve
 from tests.model.test_base_joints import hinge, link, scene
 
@@ -44,7 +44,7 @@ def test_check_tells_of_sections_turned_to_the_axes_of_the_world(joint: dict[str
     held = {"rod": "a", "position": [0.45, 0, 0], **joint}
     console = Console(record=True, width=200)
     model = build(scene_from_dict(scene([rod], [held])))
-    print_check(console, model, [], price(model), {})
+    print_check(console, model, [], price(model), prices_of_effects(model.scene))
     assert ("Note: joints[0] turns a at X = 1 to the axes of the world" in console.export_text()) == noted
 
 
