@@ -20,6 +20,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.compiling.numbered import SMALL, Argument, Numbers, Origins, Program, Step, Value, column
+from cosserat_casadi.maths.calls import is_routine
 
 DENSE_RATE = 8.0
 """Products per nanosecond that are added to long dense columns."""
@@ -135,6 +136,8 @@ class _Reading:
             return [self._product(*operands)]
         if code == ca.OP_CALL:
             function = node.which_function()
+            if is_routine(function):
+                return self._called(function, operands)
             if function.is_a("MXFunction"):
                 return self._read(function, operands)
             if function.class_name() == "Map":
@@ -440,10 +443,6 @@ def _with_operands(code: int, node: ca.MX, operands: Sequence[ca.MX]) -> ca.MX:
     result: ca.MX
     if code in REDUCTIONS:
         result = REDUCTIONS[code](*operands)
-        return result
-    if code == ca.OP_HORZREPSUM:
-        (whole,) = operands
-        result = ca.repsum(whole, 1, whole.shape[1] // node.shape[1])
         return result
     before = [node.dep(i) for i in range(node.n_dep())]
     if any(operand.is_output() for operand in before):

@@ -120,13 +120,21 @@ def chooses(function: ca.Function) -> bool:
     return any(called.class_name() == "Switch" for called in functions_within(function))
 
 
-def loops(function: ca.Function) -> bool:
-    """Whether a function, directly or not, calls a function of matrices at several columns.
+def is_routine(function: ca.Function) -> bool:
+    """Whether a function of matrices calls others, and is kept: generated code calls it instead of repeating it."""
+    if not function.is_a("MXFunction") or not function.find_functions(0):
+        return False
+    try:
+        function.call(function.mx_in(), True, False)
+    except RuntimeError:
+        # It is never to be inlined.
+        return True
+    return False
 
-    Expanded to scalars it would have the instructions of all these calls, one after the other.
-    """
-    maps = [called for called in functions_within(function) if called.is_a("Map")]
-    return any(called.info()["f"].is_a("MXFunction") for called in maps)
+
+def has_routines(function: ca.Function) -> bool:
+    """Whether a function, directly or not, calls a routine; routines are in matrices, and so is what calls them."""
+    return any(is_routine(called) for called in functions_within(function))
 
 
 def evaluated(function: ca.Function, *arguments: FloatArray, results: int | None = None) -> list[FloatArray]:

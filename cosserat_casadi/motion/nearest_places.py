@@ -72,7 +72,7 @@ class NearestPlaces:
         """Coefficients of the Chebyshev series of the centres in each element of a rod, 3×M, m."""
         grid = self.system.discrete.rods[rod].grid
         to_coefficients = ca.DM(chebyshev.chebyshev_coefficients(np.eye(grid.intervals + 1)))
-        elements = ca.horzsplit(self.system.nodes(rod), grid.intervals + 1)
+        elements = ca.horzsplit(nodes_by_products(self.system, rod), grid.intervals + 1)
         return ca.horzcat(*[nodes @ to_coefficients.T for nodes in elements])
 
     @property
@@ -148,6 +148,13 @@ class NearestPlaces:
         least = _least(LOOKS, OTHER_LOOKS)
         places: Matrix = least(ca.horzcat(*columns), ca.vertcat(others, radii, ca.DM(X).T))
         return places
+
+
+def nodes_by_products(system: System, rod: str) -> Matrix:
+    """World positions of the nodes of a rod, 3×M, m, by products of matrices, whose derivatives are short in C."""
+    base, shape = system.base(rod), system.shapes[rod]
+    nodes: Matrix = ca.MX(base.position) @ ca.DM.ones(1, shape.rod.grid.size) + base.rotation @ shape.position
+    return nodes
 
 
 def _least(count: int, others: int) -> ca.Function:

@@ -53,7 +53,7 @@ from cosserat_casadi.model.function_table import PARAMETERS, Expressions, expres
 from cosserat_casadi.model.section_poses import interpolation_weights, section_weights
 from cosserat_casadi.model.system import System
 from cosserat_casadi.motion.coincident_ends import watched_ends
-from cosserat_casadi.motion.nearest_places import NearestPlaces
+from cosserat_casadi.motion.nearest_places import NearestPlaces, nodes_by_products
 from cosserat_casadi.motion.surface_sliding import poses_apart, touching_point_of_rods
 
 SECTIONS = 8
@@ -427,7 +427,8 @@ class TouchingPairs:
         for row, rod in enumerate(_rods(touching)):
             at = ca.horzsplit(places[row, :])
             weights = ca.horzcat(*[interpolation_weights(self.model.discrete, rod, X) for X in at])
-            found.append(system.sections(rod, weights))
+            _, *directors = system.sections(rod, weights)
+            found.append([nodes_by_products(system, rod) @ weights, *directors])
         return found
 
     def _radii_at(self, system: System, touching: TouchingSections, places: Matrix) -> Matrix:
