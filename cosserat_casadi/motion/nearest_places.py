@@ -62,8 +62,10 @@ class NearestPlaces:
         """Abscissae on both rods for each stretch, 2×(len(ends) − 1)."""
         bounds = ca.DM(list(pairwise(self.ends))).T
         count = bounds.shape[1]
-        series = [ca.repmat(ca.vec(self._series(rod)), 1, count) for rod in self.rods]
-        given = [*series, ca.repmat(self._p, 1, count), bounds]
+        # As products of matrices, copies have derivatives that are short in C.
+        copies = ca.DM.ones(1, count)
+        series = [ca.vec(self._series(rod)) @ copies for rod in self.rods]
+        given = [*series, self._p @ copies, bounds]
         found = self._search.map(count)(*given)
         places: Matrix = self._step(last=True).map(count)(*given, found)
         return places

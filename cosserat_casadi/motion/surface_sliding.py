@@ -195,9 +195,9 @@ class SurfaceSliding:
             return stacked
 
         results = [
-            chained(by_x, *sums[:2]),
-            chained(shifted, *sums[2:4], change[count:, :]),
-            chained(by_inputs, *sums[4:]),
+            chained(by_x, sums[0], sums[1]),
+            chained(shifted, sums[2], sums[3], change[count:, :]),
+            chained(by_inputs, sums[4], sums[5]),
             along.T @ by_inputs,
         ]
         results = ca.graph_substitute(results, [held, along], [forces, tangents])
