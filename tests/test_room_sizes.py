@@ -16,7 +16,7 @@ LINES = {
     "actuators": 460,
     "beside rooms": 625,
     "cli": 4_410,
-    "codegen": 11_755,
+    "codegen": 11_757,
     "compiling": 5_210,
     "constraints": 1_030,
     "control": 2_805,

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import casadi as ca
 import numpy as np
@@ -95,6 +95,8 @@ def equations_functions(stage: MotionStage, name: str, curvature: bool) -> Itera
         name: name of the equations.
         curvature: whether the Jacobian of the adjoint is exact.
     """
+    if stage.pairs is not None:
+        stage = replace(stage, pairs=replace(stage.pairs, in_loops=True))
     inverse_dynamics = written(stage.dynamics.inverse_dynamics, f"{name}_at_instant")
     plain = stage.equations_by(inverse_dynamics, name)
     yield plain

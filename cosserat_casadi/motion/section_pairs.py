@@ -104,11 +104,14 @@ class TouchingPairs:
         model: the model, with or without parameters.
         sections: number of stretches of a rod, at whose ends are sections that may touch.
         duration: duration of the stage, s.
+        in_loops: whether derivatives of rods that touch rods are loops over columns, which is short in C; in CasADi's
+            virtual machine they take four times as long.
     """
 
     model: Model
     sections: int
     duration: float
+    in_loops: bool = False
 
     @cached_property
     def _nominal(self) -> Model:
@@ -188,7 +191,7 @@ class TouchingPairs:
 
     def _rows(self, arguments: list[Matrix]) -> Matrix:
         """Contact forces in the equations of the model, followed by the equations of the pairs."""
-        if all(touching.other is None for touching in self.touching):
+        if not self.in_loops or all(touching.other is None for touching in self.touching):
             return self._written_rows(arguments)
         rows: Matrix = self._rows_in_a_loop(*arguments[:-1])
         return rows
