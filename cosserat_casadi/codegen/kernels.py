@@ -23,7 +23,7 @@ from cosserat_casadi.codegen.shared_values import with_shared_kernels
 from cosserat_casadi.compiling.listing import UnknownOperationError, length, with_shorter_calls
 from cosserat_casadi.compiling.printed_kernels import ColumnForm, Kernel
 from cosserat_casadi.compiling.scalars_in_c import ColumnedFunction, with_calls_in_fours
-from cosserat_casadi.maths.calls import chooses, with_dense_results
+from cosserat_casadi.maths.calls import chooses, has_routines, with_dense_results
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.watched import watched_owners
 
@@ -204,7 +204,7 @@ def _literal(model: Model) -> bool:
 
 def kernel(model: Model, function: ca.Function, name: str, straight_within: int = STRAIGHT) -> ca.Function:
     """Make a function with its name in C: in scalars up to so many instructions, else in matrices that become loops."""
-    if not _literal(model) and not chooses(function):
+    if not (_literal(model) or chooses(function) or has_routines(function)):
         straight = scalar(function, name, straight_within)
         if straight is not None:
             return straight

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import casadi as ca
 import numpy as np
@@ -31,7 +31,7 @@ from cosserat_casadi.codegen.stage import (
 )
 from cosserat_casadi.compiling.cache import kept_texts
 from cosserat_casadi.compiling.compiler import compiled_texts, find_compiler
-from cosserat_casadi.maths.calls import chooses, with_shared_terms
+from cosserat_casadi.maths.calls import chooses, has_routines, with_shared_terms
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.function_table import PARAMETERS
 from cosserat_casadi.motion.collocated_stage import MotionStage, StageEquations, differential_places
@@ -95,6 +95,8 @@ def equations_functions(stage: MotionStage, name: str, curvature: bool) -> Itera
         name: name of the equations.
         curvature: whether the Jacobian of the adjoint is exact.
     """
+    if stage.pairs is not None:
+        stage = replace(stage, pairs=replace(stage.pairs, in_loops=True))
     inverse_dynamics = written(stage.dynamics.inverse_dynamics, f"{name}_at_instant")
     plain = stage.equations_by(inverse_dynamics, name)
     yield plain
@@ -180,7 +182,7 @@ def _tangents(stage: MotionStage, name: str) -> ca.Function:
 def _input_slopes(stage: MotionStage, name: str) -> ca.Function:
     """(x, v, a, inputs, p, inputs_rate) ↦ ∂F/∂inputs, ∂F/∂p, ∂F/∂inputs_rate of inverse dynamics at an instant."""
     plain = stage.dynamics.inverse_dynamics
-    if not chooses(plain):
+    if not (chooses(plain) or has_routines(plain)):
         scalars = [ca.SX.sym(word, plain.sparsity_in(i)) for i, word in enumerate(plain.name_in()[:-1])]
         # A function of scalars differentiates only terms that read an input, a function of matrices all.
         straight = _by_inputs(stage, scalars, name)

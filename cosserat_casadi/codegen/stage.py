@@ -22,7 +22,7 @@ from cosserat_casadi.compiling.compiler import compiled_texts, find_compiler
 from cosserat_casadi.compiling.printed_files import external_sources
 from cosserat_casadi.equilibrium.contact.relaxed_contact import RelaxedContact
 from cosserat_casadi.errors import ExportError, Problem, refuse
-from cosserat_casadi.maths.calls import chooses, in_scalars
+from cosserat_casadi.maths.calls import chooses, has_routines, in_scalars
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.obstacle_checks import RELAXED, refuse_obstacles
@@ -192,9 +192,9 @@ def adjoint_and_second(plain: ca.Function, slopes: ca.Function, curvature: bool)
 def written(function: ca.Function, name: str) -> ca.Function:
     """Write a function in scalars with common terms shared, or for loops in C if there are too many instructions.
 
-    A function that skips unneeded terms, such as those of distant rods, stays as it is.
+    A function that skips unneeded terms, such as those of distant rods, or that calls routines, stays as it is.
     """
-    if chooses(function):
+    if chooses(function) or has_routines(function):
         return _named(function, name)
     straight = in_scalars(function, name)
     if straight.n_instructions() <= STRAIGHT:

@@ -20,6 +20,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.compiling.numbered import SMALL, Argument, Numbers, Origins, Program, Step, Value, column
+from cosserat_casadi.maths.calls import is_routine
 
 DENSE_RATE = 8.0
 """Products per nanosecond that are added to long dense columns."""
@@ -135,6 +136,8 @@ class _Reading:
             return [self._product(*operands)]
         if code == ca.OP_CALL:
             function = node.which_function()
+            if is_routine(function):
+                return self._called(function, operands)
             if function.is_a("MXFunction"):
                 return self._read(function, operands)
             if function.class_name() == "Map":

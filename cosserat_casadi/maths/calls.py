@@ -60,6 +60,40 @@ def with_dense_results(function: ca.Function, name: str) -> ca.Function:
     return ca.Function(name, symbols, results, function.name_in(), function.name_out())
 
 
+def with_jacobian_in_a_loop(function: ca.Function) -> ca.Function:
+    """A function whose Jacobian is a loop: a turn makes one column, the derivative in one direction.
+
+    CasADi's own Jacobian of a function of matrices has the instructions of all columns, one after the other. It takes
+    the derivatives in one direction from the function itself, and in many from this Jacobian.
+
+    Args:
+        function: has one result, a dense column.
+    """
+    symbols = function.mx_in()
+    (result,) = function.call(symbols)
+    seeds = [ca.MX.sym("direction", *symbol.shape) for symbol in symbols]
+    (moved,) = function.forward(1).call([*symbols, ca.MX(*result.shape), *seeds])
+    along = ca.Function(f"{function.name()}_along", [*symbols, *seeds], [ca.densify(moved)])
+    read = [sorted(set(function.jac_sparsity(0, i).get_col())) for i in range(len(symbols))]
+    count = sum(map(len, read))
+    directions = []
+    for number, symbol in enumerate(symbols):
+        places = range(sum(map(len, read[:number])), count)
+        direction = ca.DM(symbol.numel(), count)
+        for row, place in zip(read[number], places, strict=False):
+            direction[row, place] = 1.0
+        directions.append(direction)
+    repeated = [ca.repmat(symbol, 1, count) for symbol in symbols]
+    columns = along.map(count)(*repeated, *map(ca.densify, directions))
+    output = ca.MX.sym("out", ca.Sparsity(*result.shape))
+    blocks = [columns @ direction.T for direction in directions]
+    jacobian = ca.Function(f"jac_{function.name()}", [*symbols, output], blocks)
+    # CasADi takes d directions from the Jacobian if this times the number of arguments, or results, is less than d.
+    penalty = 1.5 / min(function.nnz_in(), function.nnz_out())
+    options = {"custom_jacobian": jacobian, "jac_penalty": penalty, **KEPT}
+    return ca.Function(function.name(), symbols, [result], function.name_in(), function.name_out(), options)
+
+
 def functions_within(function: ca.Function) -> list[ca.Function]:
     """The functions that a function calls, directly or not, once each.
 
@@ -84,6 +118,23 @@ def chooses(function: ca.Function) -> bool:
     Expanded to scalars, or to a program without branches, it would compute all branches.
     """
     return any(called.class_name() == "Switch" for called in functions_within(function))
+
+
+def is_routine(function: ca.Function) -> bool:
+    """Whether a function of matrices calls others, and is kept: generated code calls it instead of repeating it."""
+    if not function.is_a("MXFunction") or not function.find_functions(0):
+        return False
+    try:
+        function.call(function.mx_in(), True, False)
+    except RuntimeError:
+        # It is never to be inlined.
+        return True
+    return False
+
+
+def has_routines(function: ca.Function) -> bool:
+    """Whether a function, directly or not, calls a routine; routines are in matrices, and so is what calls them."""
+    return any(is_routine(called) for called in functions_within(function))
 
 
 def evaluated(function: ca.Function, *arguments: FloatArray, results: int | None = None) -> list[FloatArray]:

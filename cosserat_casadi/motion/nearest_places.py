@@ -62,8 +62,10 @@ class NearestPlaces:
         """Abscissae on both rods for each stretch, 2×(len(ends) − 1)."""
         bounds = ca.DM(list(pairwise(self.ends))).T
         count = bounds.shape[1]
-        series = [ca.repmat(ca.vec(self._series(rod)), 1, count) for rod in self.rods]
-        given = [*series, ca.repmat(self._p, 1, count), bounds]
+        # As products of matrices, copies have derivatives that are short in C.
+        copies = ca.DM.ones(1, count)
+        series = [ca.vec(self._series(rod)) @ copies for rod in self.rods]
+        given = [*series, self._p @ copies, bounds]
         found = self._search.map(count)(*given)
         places: Matrix = self._step(last=True).map(count)(*given, found)
         return places
@@ -72,7 +74,7 @@ class NearestPlaces:
         """Coefficients of the Chebyshev series of the centres in each element of a rod, 3×M, m."""
         grid = self.system.discrete.rods[rod].grid
         to_coefficients = ca.DM(chebyshev.chebyshev_coefficients(np.eye(grid.intervals + 1)))
-        elements = ca.horzsplit(self.system.nodes(rod), grid.intervals + 1)
+        elements = ca.horzsplit(nodes_by_products(self.system, rod), grid.intervals + 1)
         return ca.horzcat(*[nodes @ to_coefficients.T for nodes in elements])
 
     @property
@@ -148,6 +150,13 @@ class NearestPlaces:
         least = _least(LOOKS, OTHER_LOOKS)
         places: Matrix = least(ca.horzcat(*columns), ca.vertcat(others, radii, ca.DM(X).T))
         return places
+
+
+def nodes_by_products(system: System, rod: str) -> Matrix:
+    """World positions of the nodes of a rod, 3×M, m, by products of matrices, whose derivatives are short in C."""
+    base, shape = system.base(rod), system.shapes[rod]
+    nodes: Matrix = ca.MX(base.position) @ ca.DM.ones(1, shape.rod.grid.size) + base.rotation @ shape.position
+    return nodes
 
 
 def _least(count: int, others: int) -> ca.Function:

@@ -44,6 +44,7 @@ from cosserat_casadi.equilibrium.contact.gaps import ball_radius, body_pairs, pa
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_from, surface
 from cosserat_casadi.loads.contact_layer import along_surface, weighted_way
 from cosserat_casadi.loads.obstacle_load import section_radii
+from cosserat_casadi.maths.calls import with_jacobian_in_a_loop
 from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
@@ -52,7 +53,7 @@ from cosserat_casadi.model.function_table import PARAMETERS, Expressions, expres
 from cosserat_casadi.model.section_poses import interpolation_weights, section_weights
 from cosserat_casadi.model.system import System
 from cosserat_casadi.motion.coincident_ends import watched_ends
-from cosserat_casadi.motion.nearest_places import NearestPlaces
+from cosserat_casadi.motion.nearest_places import NearestPlaces, nodes_by_products
 from cosserat_casadi.motion.surface_sliding import poses_apart, touching_point_of_rods
 
 SECTIONS = 8
@@ -103,11 +104,14 @@ class TouchingPairs:
         model: the model, with or without parameters.
         sections: number of stretches of a rod, at whose ends are sections that may touch.
         duration: duration of the stage, s.
+        in_loops: whether derivatives of rods that touch rods are loops over columns, which is short in C; in CasADi's
+            virtual machine they take four times as long.
     """
 
     model: Model
     sections: int
     duration: float
+    in_loops: bool = False
 
     @cached_property
     def _nominal(self) -> Model:
@@ -185,6 +189,22 @@ class TouchingPairs:
         names = self.model.dynamics_jacobian.name_out()
         return self._function("dynamics_jacobian", arguments, [*whole, residual], names)
 
+    def _rows(self, arguments: list[Matrix]) -> Matrix:
+        """Contact forces in the equations of the model, followed by the equations of the pairs."""
+        if not self.in_loops or all(touching.other is None for touching in self.touching):
+            return self._written_rows(arguments)
+        rows: Matrix = self._rows_in_a_loop(*arguments[:-1])
+        return rows
+
+    @cached_property
+    def _rows_in_a_loop(self) -> ca.Function:
+        """Arguments of :attr:`inverse_dynamics` but the last ↦ the rows, with derivatives that are short in C."""
+        arguments = self._symbols
+        words = self._words[:-1]
+        return with_jacobian_in_a_loop(
+            ca.Function("pairs", arguments[:-1], [self._written_rows(arguments)], words, ["rows"])
+        )
+
     @cached_property
     def _symbols(self) -> list[Matrix]:
         """Symbols for x, v, a, inputs, p, inputs_rate and inputs_acceleration."""
@@ -210,7 +230,7 @@ class TouchingPairs:
         """List with the parameters of the model; empty if it has none."""
         return [p[:-1]] if self.model.parameters.size else []
 
-    def _rows(self, arguments: list[Matrix]) -> Matrix:
+    def _written_rows(self, arguments: list[Matrix]) -> Matrix:
         """Contact forces in the equations of the model, followed by the equations of the pairs."""
         x, v, a, inputs, p, rate, _ = arguments
         own = slice(0, self.model.size)
@@ -410,7 +430,8 @@ class TouchingPairs:
         for row, rod in enumerate(_rods(touching)):
             at = ca.horzsplit(places[row, :])
             weights = ca.horzcat(*[interpolation_weights(self.model.discrete, rod, X) for X in at])
-            found.append(system.sections(rod, weights))
+            _, *directors = system.sections(rod, weights)
+            found.append([nodes_by_products(system, rod) @ weights, *directors])
         return found
 
     def _radii_at(self, system: System, touching: TouchingSections, places: Matrix) -> Matrix:

@@ -19,6 +19,7 @@ import casadi as ca
 
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
 from cosserat_casadi.loads.contact_layer import STANDING
+from cosserat_casadi.maths.calls import KEPT
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.system import System
@@ -93,17 +94,21 @@ class SurfaceSliding:
     @cached_property
     def _poses(self) -> Matrix:
         """Poses of the touching sections in the unknowns, the inputs and the section, 12s×1."""
-        facing, (x, inputs, _, _, section, _) = self.facing, self._symbols
-        count = facing.points.count
-        sides: list[tuple[Facing, Matrix]] = [(facing, section[:count])]
-        if isinstance(facing, RodsFacing):
-            own, other = facing.node_count, count
-            sides = [(facing, section[:own]), (facing.other, section[own:other])]
+        x, inputs, _, _, section, _ = self._symbols
 
         def stacked(system: System) -> list[Matrix]:
-            return [_pose(side, system, weights) for side, weights in sides]
+            return [_pose(side, system, section[span]) for side, span in self._sides]
 
-        return ca.vertcat(*in_stacked_inputs(facing.model, x, inputs, stacked))
+        return ca.vertcat(*in_stacked_inputs(self.facing.model, x, inputs, stacked))
+
+    @property
+    def _sides(self) -> list[tuple[Facing, slice]]:
+        """The rod or body, or both rods, each with the place of the weights of its nodes in the section."""
+        facing, count = self.facing, self.facing.points.count
+        if not isinstance(facing, RodsFacing):
+            return [(facing, slice(0, count))]
+        own = facing.node_count
+        return [(facing, slice(0, own)), (facing.other, slice(own, count))]
 
     @cached_property
     def _rates(self) -> Matrix:
@@ -158,16 +163,28 @@ class SurfaceSliding:
         those of the sums wᵀq and τᵀq̇, with the forces w on the poses and the tangents τ held. Such a sum does not
         couple both rods, and its code is a fraction of that of the derivatives of the generalised force as a whole.
         """
-        x, inputs, _, _, section, axis = self._symbols
-        poses, rates, abscissae = self._poses, self._rates, section[self.facing.points.count :]
+        x, inputs, v, rate, section, axis = self._symbols
+        count = self.facing.points.count
+        poses, rates, abscissae = self._poses, self._rates, section[count:]
         change, force = ca.MX.sym("change", section.shape[0], abscissae.shape[0]), ca.MX.sym("force", 2)
         forces, *matrices = self._law_derivatives(poses, rates, abscissae, axis, force)
         rows_by_poses, rows_by_X, forces_by_poses, forces_by_X = matrices
         tangents = self._tangents(poses, abscissae, axis)
         held = ca.MX.sym("held_forces", forces.shape[0])
         along = ca.MX.sym("held_tangents", *tangents.shape)
-        generalised = ca.jtimes(poses, x, held, True)
-        by_x, by_inputs = ca.jacobian(poses, x), ca.jacobian(poses, inputs)
+        if len(self._sides) == 1:
+            parts = [_section_derivatives(poses, rates, x, inputs, section, change, held, along)]
+        else:
+            # Generated code calls what is of one rod, for each pair of it.
+            on_sides = zip(self._sides, ca.vertsplit(held, 12), ca.vertsplit(along, 12), strict=True)
+            parts = [
+                _routine(side, span, len(self._sides)).call([x, inputs, v, rate, section[span], change[span, :], *own])
+                for (side, span), *own in on_sides
+            ]
+        by_x, by_inputs, shifted, *sums = (
+            ca.vertcat(*blocks) if place < 3 else sum(blocks[1:], blocks[0])
+            for place, blocks in enumerate(zip(*parts, strict=True))
+        )
 
         def chained(of_poses: Matrix, of_rates: Matrix, of_generalised: Matrix, shift: Matrix | None = None) -> Matrix:
             """Derivatives, (4 + n)×k, from those of poses, of τᵀq̇, of the generalised force, and of abscissae."""
@@ -177,13 +194,10 @@ class SurfaceSliding:
             stacked: Matrix = ca.vertcat(rows[:2, :] + of_rates, rows[2:, :], of_generalised + by_x.T @ pushes)
             return stacked
 
-        shifted, shifted_rates, shifted_force = (
-            ca.jtimes(part, section, change) for part in (poses, rates, generalised)
-        )
         results = [
-            chained(by_x, ca.jtimes(rates, x, along, True).T, ca.jacobian(generalised, x)),
-            chained(shifted, along.T @ shifted_rates, shifted_force, change[self.facing.points.count :, :]),
-            chained(by_inputs, ca.jtimes(rates, inputs, along, True).T, ca.jacobian(generalised, inputs)),
+            chained(by_x, sums[0], sums[1]),
+            chained(shifted, sums[2], sums[3], change[count:, :]),
+            chained(by_inputs, sums[4], sums[5]),
             along.T @ by_inputs,
         ]
         results = ca.graph_substitute(results, [held, along], [forces, tangents])
@@ -234,6 +248,55 @@ def _material_arm(rotation: Matrix, arm: Matrix) -> Matrix:
     first, second, third = ca.horzsplit(rotation)
     across = [ca.cross(second, third), ca.cross(third, first), ca.cross(first, second)]
     return ca.vertcat(*(ca.dot(one, arm) for one in across)) / ca.dot(across[0], first)
+
+
+def _routine(side: Facing, nodes: slice, shifts: int) -> ca.Function:
+    """(x, inputs, v, rate, weights of nodes, their changes, forces, tangents) ↦ derivatives of a rod's section.
+
+    Args:
+        side: the rod.
+        nodes: place of the weights in the section of a pair.
+        shifts: number of changes.
+    """
+    model = side.model
+    sizes = {"x": model.size, "inputs": stacked_size(model)}
+    x, inputs = (ca.MX.sym(word, size) for word, size in sizes.items())
+    v, rate = (ca.MX.sym(f"{word}_rate", size) for word, size in sizes.items())
+    count = nodes.stop - nodes.start
+    weights, change = ca.MX.sym("weights", count), ca.MX.sym("change", count, shifts)
+    forces, tangents = ca.MX.sym("forces", 12), ca.MX.sym("tangents", 12, 2)
+    pose = ca.vertcat(*in_stacked_inputs(model, x, inputs, lambda system: [_pose(side, system, weights)]))
+    rates = ca.jtimes(pose, x, v) + ca.jtimes(pose, inputs, rate)
+    results = _section_derivatives(pose, rates, x, inputs, weights, change, forces, tangents)
+    name = f"section_of_{[rod.name for rod in model.scene.rods].index(side.owner)}"
+    arguments = [x, inputs, v, rate, weights, change, forces, tangents]
+    return ca.Function(name, arguments, [ca.densify(result) for result in results], KEPT)
+
+
+def _section_derivatives(
+    pose: Matrix,
+    rates: Matrix,
+    x: Matrix,
+    inputs: Matrix,
+    section: Matrix,
+    change: Matrix,
+    forces: Matrix,
+    tangents: Matrix,
+) -> list[Matrix]:
+    """Nine derivatives of the pose of a section, 12×1, and of its rates.
+
+    The first three are those of the pose q by x, by inputs, and with the changes of the section, 12 rows each. Then
+    follow in turn the derivatives of τᵀq̇ and of (∂q/∂x)ᵀ w, with the tangents τ, 12×2, and the forces w on the pose
+    held, by x, with the changes, and by inputs.
+    """
+    generalised = ca.jtimes(pose, x, forces, True)
+    shifted, shifted_rates, shifted_force = (ca.jtimes(part, section, change) for part in (pose, rates, generalised))
+    return [
+        *(ca.jacobian(pose, x), ca.jacobian(pose, inputs), shifted),
+        *(ca.jtimes(rates, x, tangents, True).T, ca.jacobian(generalised, x)),
+        *(tangents.T @ shifted_rates, shifted_force),
+        *(ca.jtimes(rates, inputs, tangents, True).T, ca.jacobian(generalised, inputs)),
+    ]
 
 
 def _pose(facing: Facing, system: System, weights: Matrix) -> Matrix:

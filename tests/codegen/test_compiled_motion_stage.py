@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import casadi as ca
@@ -16,13 +16,18 @@ from cosserat_casadi.codegen import motion_stage as motion_stage_module
 from cosserat_casadi.codegen import stage as stage_module
 from cosserat_casadi.codegen.motion_stage import compiled_motion_stage, equations_functions, poses_functions
 from cosserat_casadi.control import MotionStage, motion_stage, radau
+from cosserat_casadi.maths.calls import functions_within
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.test_load import cached, needs_compiler
 from tests.control.swing import arm
 from tests.families import mostly_slow
+from tests.motion.test_rods_that_strike_rods import free_rods
 from tests.moving_scenes import FAMILIES, model_of, rod
 
 pytestmark = needs_compiler
+
+WRITTEN = ("SXFunction", "MXFunction")
+"""Classes of functions with instructions."""
 
 
 @pytest.fixture(autouse=True)
@@ -113,6 +118,54 @@ def hessian(equations: ca.Function, poses: ca.Function, stage: MotionStage) -> F
     lagrangian += ca.dot(weights, equations(*arguments))
     value = ca.hessian(lagrangian, ca.vertcat(*arguments))[0]
     return np.asarray(ca.Function("hessian", arguments, [value])(*somewhere(stage)).full())
+
+
+def rods_that_touch(strain: str, sections: int) -> MotionStage:
+    """Two clamped rods that cross, with friction between them."""
+    tables = free_rods()
+    del tables["velocities"]
+    tables["accuracy"] = {"modes": 1, "nodes": 3}
+    tables["rod_contacts"][0]["friction"] = 0.3
+    for own in tables["rods"]:
+        own["strain"] = strain
+        del own["base"]["free"]
+    return motion_stage(build(scene_from_dict(tables), moving=True), 1e-3, sections=sections)
+
+
+def test_derivatives_of_rods_that_touch_are_short() -> None:
+    """Functions that the Jacobian calls are for one column: written for all columns they have 85 000 instructions."""
+    for function in equations_functions(rods_that_touch("kirchhoff", 2), "touching_equations", curvature=False):
+        called = [each for each in functions_within(function) if each.class_name() in WRITTEN]
+        assert sum(each.n_instructions() for each in called) < 25_000
+
+
+def plain_slopes(function: ca.Function, at: list[FloatArray]) -> Iterator[FloatArray]:
+    """Jacobian blocks of a function column by column, each the derivative in one direction."""
+    value, along = function(*at), function.forward(1)
+    for number, argument in enumerate(at):
+        columns = []
+        for direction in np.eye(len(argument)):
+            seeds = [direction if other == number else np.zeros(len(each)) for other, each in enumerate(at)]
+            columns.append(along(*at, value, *seeds).full())
+        yield np.hstack([np.zeros((len(value.full()), 0)), *columns])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("strain", ["planar", "kirchhoff"])
+def test_rods_that_touch_vs_plain(strain: str) -> None:
+    stage = rods_that_touch(strain, 8)
+    compiled = compiled_motion_stage(stage, f"touching_{strain}")
+    state, unknowns, inputs, rate = somewhere(stage)
+    at = [0.1 * state, 0.1 * unknowns, inputs, np.array([1e-2]), rate]
+    found, expected = compiled.equations.function, stage.equations.function
+    values = expected(*at).full()
+    assert_allclose(found(*at), values, rtol=0, atol=1e-12 * np.abs(values).max())
+    for block, plain in zip(slopes_of(found, at), plain_slopes(expected, at), strict=True):
+        assert_allclose(block.full(), plain, rtol=0, atol=1e-12 * np.abs(values).max())
+    multipliers = np.linspace(-1.0, 2.0, stage.unknowns_size)
+    outputs = [ca.DM(*found.size_out(0)), multipliers]
+    for part, block in zip(found.reverse(1).call([*at, *outputs]), slopes_of(found, at), strict=True):
+        assert_allclose(part.full()[:, 0], multipliers @ block.full(), rtol=0, atol=1e-12 * np.abs(values).max())
 
 
 @pytest.mark.slow
