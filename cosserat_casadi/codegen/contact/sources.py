@@ -171,6 +171,7 @@ def _words(chosen: Chosen, names: Names, tables: Tables, generated: dict[str, st
         **PLAIN_BUILD,
         **dict.fromkeys(("in_contact", "with_axes"), True),
         "rods_touch_rods": chosen.scene.rods_touch_exactly,
+        "what_is_touched": "obstacles or each other" if chosen.scene.rods_touch_exactly else "obstacles",
         "samples_of_rod": SAMPLES_OF_ROD,
         "contact_rates": 5 if chosen.scene.rods_touch_exactly else 4,
         **input_words(free, names),
