@@ -13,6 +13,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Model, Solution, build, export, scene_from_dict, solve
 from cosserat_casadi.codegen.contact.compiled import CompiledContactSolution
+from cosserat_casadi.equilibrium.contact.rod_gaps import RodsApart
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
 from tests.codegen.contact_libraries import ContactLibrary
@@ -148,12 +149,30 @@ def test_no_step_leads_through_another_rod(small: ContactLibrary) -> None:
     assert gentle.converged
 
 
+def test_rods_touch_where_their_surfaces_meet(small: ContactLibrary) -> None:
+    """A beam that bends to another rod touches it at the force 6 EI g/(w² (3L − w)): none below, contact above."""
+    own = 0.07
+    force = 2e-3 * 6 * bending(1e-3) / (own**2 * (3 * LENGTH - own))
+    far = small.loaded.solve(down(0.6 * force))
+    for share, count in ((0.98, 0), (1.02, 1)):
+        found = small.loaded.solve(down(share * force), far)
+        assert found.converged, found.message
+        assert len(found.contacts) == count
+    margins = small.loaded.margins(far)
+    assert margins is not None
+    assert_allclose(margins.gap * LENGTH, 0.4 * 2e-3, rtol=2e-2, atol=0)
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("force", [1e-5, 2e-4, 5e-4, 8e-4])
-def test_errors_verdicts_and_margins(crossed: ContactLibrary, force: float) -> None:
-    """They are those of Python, in contact and without; many load cases have the answers of single ones."""
-    found = crossed.loaded.solve(down(force))
-    wanted = solve(crossed.model, down(force))
+@pytest.mark.parametrize("force", [(0, 2e-6, -1e-5), (0, 4e-5, -2e-4), (0, 1e-4, -5e-4), (4.4e-5, 1e-5, -1e-4)])
+def test_errors_verdicts_and_margins(crossed: ContactLibrary, force: tuple[float, ...]) -> None:
+    """They are those of Python, in contact and without; many load cases have the answers of single ones.
+
+    Under the last force the place on the other rod has the largest error.
+    """
+    inputs = np.array(force)
+    found = crossed.loaded.solve(inputs)
+    wanted = solve(crossed.model, inputs)
     assert_same(found, wanted)
     assert_allclose(found.error_estimate, wanted.error_estimate, rtol=1e-4, atol=1e-10)
     judged = crossed.loaded.stability(found)
@@ -162,7 +181,11 @@ def test_errors_verdicts_and_margins(crossed: ContactLibrary, force: float) -> N
     margins = crossed.loaded.margins(found)
     assert margins is not None and margins.gap > 0.0
     assert (margins.force == 1.0) == bool(found.contacts)
-    (one,) = crossed.loaded.solve_batch(down(force)[None])
+    if not found.contacts:
+        # The nearest section of the other rod is none of those that are looked at first; the first rod's is one.
+        least = min(valley.gap for valley in RodsApart.of(wanted, ("a", "b")).valleys)
+        assert_allclose(margins.gap, least, rtol=0, atol=2e-5)
+    (one,) = crossed.loaded.solve_batch(inputs[None])
     assert_same(one, wanted)
 
 

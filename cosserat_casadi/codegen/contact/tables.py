@@ -73,7 +73,7 @@ class Tables:
 
     @property
     def pairs(self) -> list[tuple[int, int]]:
-        """Indices of owners of contacts with numbers of what they must not enter: obstacles, then other rods."""
+        """Indices of owners of contacts with numbers of the obstacles, and of other rods, that they must not enter."""
         return [*self.pairs_with_obstacles, *self.pairs_of_rods]
 
     @property
