@@ -107,6 +107,7 @@ ROLES = {
     "contact_ways.c": "ways that lead into such obstacles",
     "struck_rods.h": "declarations of `struck_rods.c`",
     "struck_rods.c": "gaps to other rods",
+    "touching_rods.c": "gaps to other rods at rest, and whether rods pass through each other",
     "square_systems.c": "linear systems of any size",
     "least_pushes.c": "which of several contacts push",
     "contact_steps.c": "forces and blows of exact contact in a step",
@@ -258,7 +259,8 @@ def rendered(
     """
     header, source, config, demo = (render(template, words) for template in templates)
     name = words["name"]
-    unused = "STRETCHES_ARE_TOLD" if words.get("rods_face_rods") else "STRETCHES_ARE_TOLD|RODS_FACE_RODS"
+    used = (("RODS_FACE_RODS", "rods_face_rods"), ("RODS_TOUCH_RODS", "rods_touch_rods"))
+    unused = "|".join(["STRETCHES_ARE_TOLD", *(macro for macro, word in used if not words.get(word))])
     left_out, on_device = re.compile(LINES.format(words=unused)), bool(words.get("on_device"))
     files = {
         f"{name}.h": header,

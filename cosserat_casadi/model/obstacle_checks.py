@@ -81,7 +81,7 @@ def exact_rods(scene: scenes.Scene, what: str) -> Iterator[Problem]:
     for number, contact in enumerate(scene.rod_contacts):
         if contact.exact:
             problem = f"{what} has no contact of rods without a width"
-            remedy = "leave exact out, for a contact that is smooth; or solve or simulate it, or export its motions"
+            remedy = "leave exact out, for a contact that is smooth; or solve, simulate or export it"
             yield Problem(f"rod_contacts[{number}].exact", problem, remedy)
 
 

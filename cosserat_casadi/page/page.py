@@ -91,7 +91,10 @@ def facts_of_page(solution: Solution, model: Model, asked: Given | None = None) 
     """
     facts = {**page_facts(solution, model, asked), **asked_accuracy(solution)}
     if model.scene.touches_exactly:
-        facts |= {"obstacle_names": [obstacle.name for obstacle in model.scene.obstacles], **IN_CONTACT}
+        # Other rods are counted behind the obstacles.
+        rods = model.scene.rods if model.scene.rods_touch_exactly else ()
+        touched = [*model.scene.obstacles, *rods]
+        facts |= {"obstacle_names": [record.name for record in touched], **IN_CONTACT}
     return facts
 
 

@@ -253,7 +253,7 @@ def export(
     _write(asked, exported_scene, solution, choice, cases, given_ranges)
     _write_mjcf(of_links, mjcf)
     print_choice(Console(), choice)
-    if exported_scene.rods_touch_exactly:
+    if asked.moves and exported_scene.rods_touch_exactly:
         Console().print(APART)
     print_locking(Console(stderr=True), locking_sentence(choice.locked))
     missed = choice.within_tolerance is False

@@ -89,12 +89,17 @@ class _Met:
                 self.add(arrangement.state(path.x[points[-1]]))
 
     def key(self, state: ContactState) -> object:
-        """Return the discrete part of an arrangement: who touches what, and between which fixed ends of elements."""
+        """Return the discrete part of an arrangement: who touches what, and the ends of elements of each rod in order.
+
+        An end is a number where it is fixed, else the index of the place of contact that moves it: second rods do not
+        have theirs in the order of the contacts.
+        """
         loaded = with_contacts(self.scene, state, self.grids.bending_modes(self.scene))
+        sought = [entry for touch in state.touches for entry in touch.sought]
         ends = []
         for name, discretisation in self.grids.discretisation(loaded).items():
-            places = {float(end) for touch in state.touches if touch.owner == name for end in touch.moving}
-            ends.append(tuple(None if end in places else end for end in discretisation.breaks))
+            places = {float(end): (number,) for number, (rod, end) in enumerate(sought) if rod == name}
+            ends.append(tuple(places.get(end, end) for end in discretisation.breaks))
         return state.signature, tuple(ends)
 
     def check(self) -> None:

@@ -12,7 +12,7 @@ from cosserat_casadi.equilibrium.contact.gaps import body_pairs
 from cosserat_casadi.errors import ExportError, Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import input_layout
-from cosserat_casadi.model.obstacle_checks import exact_rods, held_by_contact, suggested_width
+from cosserat_casadi.model.obstacle_checks import held_by_contact, suggested_width
 from cosserat_casadi.model.parameters import parameter_layout
 
 SENTENCES = {
@@ -54,7 +54,6 @@ def check_contact(scene: scenes.Scene, asked: Mapping[str, bool]) -> None:
                 problems.append(Problem(f"--{word}", problem, remedy))
         problems += refused_in_motion(scene)
     else:
-        problems += exact_rods(scene, "an equilibrium in C")
         problems += _refused_parameters(scene)
         problems += _refused_obstacles(scene)
         problems += held_by_contact(scene)

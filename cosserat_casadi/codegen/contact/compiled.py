@@ -32,7 +32,10 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
 
 RATES = 4
-"""Number of rows of the derivatives of a contact: its two abscissae, and the forces there."""
+"""Number of rows of the derivatives of a contact: its two abscissae, and the forces there.
+
+Where rods touch rods, a further row has the derivatives of the abscissa on the other rod.
+"""
 
 
 class Margins(NamedTuple):
@@ -75,6 +78,12 @@ class ContactInC(ctypes.Structure):
         ("force", ctypes.c_double * 3),
         ("point_forces", ctypes.c_double * 2),
     )
+
+
+class ContactOfRodsInC(ctypes.Structure):
+    """The struct in C of a contact where rods touch rods: an obstacle may be another rod."""
+
+    _fields_ = (*ContactInC._fields_, ("other_place", ctypes.c_double))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -138,6 +147,11 @@ class CompiledContact(LoadedLibrary):
     def bodies(self) -> list[str]:
         """Names of the bodies, in order."""
         return list(self.manifest.get("bodies", []))
+
+    @property
+    def _rods_touch_rods(self) -> bool:
+        """Whether rods may touch rods."""
+        return bool(self.manifest.get("rods_touch_rods", False))
 
     @property
     def _posed(self) -> int:
@@ -272,8 +286,12 @@ class CompiledContact(LoadedLibrary):
         return None if columns is None else by_tip(self.rods, columns[: len(self.rods)])
 
     def contact_sensitivity(self, solution: CompiledContactSolution) -> list[FloatArray] | None:
-        """Return d(start, end, both forces)/d(inputs, parameters) of each contact, shape (4, m); or None."""
-        columns = self._by_all("contact_sensitivity", solution, len(solution.contacts), RATES)
+        """Return d(start, end, both forces)/d(inputs, parameters) of each contact, shape (4, m); or None.
+
+        Where rods touch rods a fifth row has the derivatives of the abscissa on the other rod.
+        """
+        rows = RATES + self._rods_touch_rods
+        columns = self._by_all("contact_sensitivity", solution, len(solution.contacts), rows)
         return None if columns is None else [own.T for own in columns]
 
     def _by_all(self, word: str, solution: CompiledContactSolution, count: int, rows: int) -> FloatArray | None:
@@ -360,13 +378,15 @@ class CompiledContact(LoadedLibrary):
 
     def _contacts(self, state: Any) -> tuple[Contact, ...]:
         most = max([1, *map(len, self.arrangements)])
-        found = (ContactInC * most)()
+        found = ((ContactOfRodsInC if self._rods_touch_rods else ContactInC) * most)()
         count = self._function("contacts")(state, found, self._workspace())
         contacts = []
+        obstacles = self.manifest["obstacles"]
         for own in itertools.islice(found, count):
+            of_rods = own.obstacle >= len(obstacles)
             ends = 2 if own.is_line else 1
             contact = Contact(
-                obstacle=self.manifest["obstacles"][own.obstacle],
+                obstacle=[*obstacles, *self.rods][own.obstacle],
                 owner=[*self.rods, *self.bodies][own.rod],
                 of_body=own.rod >= len(self.rods),
                 start=own.start,
@@ -374,6 +394,7 @@ class CompiledContact(LoadedLibrary):
                 force=np.array(own.force),
                 ends=tuple(own.point_forces[:ends]),
                 kind="line" if own.is_line else "point",
+                on_rods=(own.start, own.other_place) if of_rods else None,
             )
             contacts.append(contact)
         return tuple(contacts)

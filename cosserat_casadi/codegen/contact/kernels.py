@@ -16,10 +16,12 @@ from cosserat_casadi.codegen.kernels import by_columns, kernel, with_derivatives
 from cosserat_casadi.codegen.passages import distance_kernel
 from cosserat_casadi.compiling.printed_kernels import Kernel
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Written
-from cosserat_casadi.equilibrium.contact.contact_state import Touch
+from cosserat_casadi.equilibrium.contact.contact_state import Place, Touch, is_sought
+from cosserat_casadi.equilibrium.contact.gap_rows import centres_apart
 from cosserat_casadi.equilibrium.contact.gaps import body_pairs, obstacle_of, pairs
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
 from cosserat_casadi.loads.load import polynomials_at
+from cosserat_casadi.loads.rods_point import across
 from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.rotation import quaternion_product
 from cosserat_casadi.maths.typing import Matrix
@@ -202,6 +204,10 @@ class ArrangementKernels:
             if touch.of_body:
                 forces.append(self._unit(touch) * ends * self.normal_of_body(touch))
                 continue
+            if touch.other is not None:
+                normal, _ = across(centres_apart(self._written.system, touch))
+                forces.append(self._unit(touch) * ends * normal)
+                continue
             grid = self._written.system.discrete.rods[touch.owner].grid
             force: Matrix = ca.MX.zeros(3)
             for number, end in enumerate(touch.ends):
@@ -234,32 +240,66 @@ class ArrangementKernels:
         return normal
 
     def _bends(self) -> Matrix:
-        """Second derivative of the gap by X at the beginning of every contact, over the length."""
+        """Second derivative of the gap by X at the beginning of every contact, over the length.
+
+        In a scene whose rods touch rods two numbers of every contact follow. The three numbers of two rods are the
+        entries (1, 1), (1, 2) and (2, 2) of the second derivative by both places if both are sought; else the first
+        number is the second derivative by the one that is sought.
+        """
+        scene = self._written.system.discrete.scene
+        count = len(self._written.state.touches) if scene.rods_touch_exactly else 0
+        further: list[Matrix] = [ca.MX.zeros(2)] * count
         bends: list[Matrix] = [ca.MX(0, 1)]
-        for touch in self._written.state.touches:
+        for number, touch in enumerate(self._written.state.touches):
             if touch.of_body:
                 # Its place follows from where it is, and does not slide by itself.
                 bends.append(ca.MX.zeros(1))
                 continue
             rod = self._written.system.discrete.rods[touch.owner]
-            shape = self._written.system.shapes[touch.owner]
-            node = rod.grid.node_at(touch.start)
-            rotation = self._written.system.base(touch.owner).rotation
-            # Rates and strains are counted in the coordinate that integrals run over, which a moving element stretches.
-            rates = rod.grid.rates_in(rod.grid.element_of_node[[node]])
-            rate = 1.0 if rates is None else as_matrix(rates)[0]
-            tangent = rotation @ shape.tangent[:, node] / rate
-            curvature: Matrix = ca.MX.zeros(3)
-            for director, row in zip(shape.directors, rod.strain_rows(shape.q, (0, 1, 2), shape.ratio), strict=True):
-                if row is not None:
-                    curvature = curvature + rotation @ director[:, node] * row[node] / rate
-            obstacle = obstacle_of(self._written.system.discrete.scene, touch.obstacle)
-            _, normal, second = surface(obstacle)(self._written.system.position_at(touch.owner, node))
-            length = rod.properties.length
-            # The rate of the extension is along the tangent, on which the normal stands.
-            bend = ca.dot(tangent, second @ tangent) + ca.dot(normal, length * ca.cross(curvature, tangent))
-            bends.append(bend / length)
-        return ca.vertcat(*bends)
+            if touch.other is not None:
+                of_both = self._bends_of_rods(touch) / rod.properties.length
+                bends.append(of_both[0])
+                further[number] = of_both[1:]
+                continue
+            position, tangent, turned = self._centre_line(touch.owner, touch.start)
+            obstacle = obstacle_of(scene, touch.obstacle)
+            _, normal, second = surface(obstacle)(position)
+            bend = ca.dot(tangent, second @ tangent) + ca.dot(normal, turned)
+            bends.append(bend / rod.properties.length)
+        return ca.vertcat(*bends, *further)
+
+    def _bends_of_rods(self, touch: Touch) -> Matrix:
+        """Second derivative of the distance of two rods by the places that are sought, m, three numbers."""
+        assert touch.other is not None, "two rods"
+        own, other = (self._centre_line(*place) for place in zip(touch.rods, (touch.start, touch.other), strict=True))
+        normal, curvature = across(own[0] - other[0])
+        first = ca.dot(own[1], curvature @ own[1]) + ca.dot(normal, own[2])
+        last = ca.dot(other[1], curvature @ other[1]) - ca.dot(normal, other[2])
+        if is_sought(touch.start) and is_sought(touch.other):
+            return ca.vertcat(first, -ca.dot(own[1], curvature @ other[1]), last)
+        alone = first if is_sought(touch.start) else last if is_sought(touch.other) else ca.MX.zeros(1)
+        return ca.vertcat(alone, 0, 0)
+
+    def _centre_line(self, name: str, X: Place) -> tuple[Matrix, Matrix, Matrix]:
+        """Position of a section at an end of an element, and its first and second derivative by X, 3×1 each, m.
+
+        The second derivative is without the rate of the extension, which is along the tangent, normal to the contact.
+        """
+        system = self._written.system
+        rod = system.discrete.rods[name]
+        shape = system.shapes[name]
+        node = rod.grid.node_at(X)
+        rotation = system.base(name).rotation
+        # Rates and strains are counted in the coordinate that integrals run over, which a moving element stretches.
+        rates = rod.grid.rates_in(rod.grid.element_of_node[[node]])
+        rate = 1.0 if rates is None else as_matrix(rates)[0]
+        tangent = rotation @ shape.tangent[:, node] / rate
+        curvature: Matrix = ca.MX.zeros(3)
+        for director, row in zip(shape.directors, rod.strain_rows(shape.q, (0, 1, 2), shape.ratio), strict=True):
+            if row is not None:
+                curvature = curvature + rotation @ director[:, node] * row[node] / rate
+        turned: Matrix = rod.properties.length * ca.cross(curvature, tangent)
+        return system.position_at(name, node), tangent, turned
 
     def normal_of_body(self, touch: Touch) -> Matrix:
         """Normal of the obstacle at the origin of the body that touches it."""

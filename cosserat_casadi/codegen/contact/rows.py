@@ -5,6 +5,7 @@ from __future__ import annotations
 from cosserat_casadi.codegen.contact.arrangements import Chosen, chosen_arrangements
 from cosserat_casadi.codegen.contact.checks import check_contact
 from cosserat_casadi.codegen.contact.sources import contact_files
+from cosserat_casadi.codegen.contact.tables import Tables
 from cosserat_casadi.codegen.names import Names, scene_names
 from cosserat_casadi.codegen.rows import (
     CONTACT,
@@ -18,7 +19,7 @@ from cosserat_casadi.codegen.rows import (
 )
 from cosserat_casadi.compiling.texts import render
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
-from cosserat_casadi.equilibrium.contact.gaps import pairs
+from cosserat_casadi.equilibrium.contact.gaps import pairs, rod_pairs
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 
@@ -52,10 +53,10 @@ def contact_row_library(
 def _rows_source(chosen: Chosen, names: Names, columns: tuple[str, ...]) -> str:
     """Write the source of the function for rows."""
     rods = [rod.name for rod in chosen.scene.rods]
-    obstacles = [obstacle.name for obstacle in chosen.scene.obstacles]
-    touching = list(pairs(chosen.scene))
-    entries = [f"{{{rods.index(rod)}, {obstacles.index(obstacle.name)}}}" for rod, obstacle in touching]
-    first_pair = columns.index(f"{touching[0][0]}.{touching[0][1].name}.{CONTACT[0]}")
+    # Contacts of bodies have no columns here.
+    entries = [f"{{{owner}, {touched}}}" for owner, touched in Tables(chosen, names.name).pairs if owner < len(rods)]
+    touching = [*((rod, obstacle.name) for rod, obstacle in pairs(chosen.scene)), *rod_pairs(chosen.scene)]
+    first_pair = columns.index(f"{'.'.join(touching[0])}.{CONTACT[0]}")
     words = {
         "name": names.name,
         "MACRO": names.macro,
@@ -65,8 +66,9 @@ def _rows_source(chosen: Chosen, names: Names, columns: tuple[str, ...]) -> str:
         "actuators": len(chosen.scene.actuators),
         "first_pair": first_pair,
         "of_pair": len(CONTACT),
-        "pairs": len(touching),
+        "pairs": len(entries),
         "pair_entries": ", ".join(entries),
+        "rods_touch_rods": chosen.scene.rods_touch_exactly,
         "with_parameters": chosen.parameters.size > 0,
         **judged_words(columns),
     }

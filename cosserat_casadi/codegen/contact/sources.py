@@ -51,7 +51,7 @@ from cosserat_casadi.equilibrium.contact import (
     contact_state,
     passing_through,
 )
-from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
+from cosserat_casadi.equilibrium.contact.contact_state import Touch, without_contacts
 from cosserat_casadi.equilibrium.metrics import ROUNDING, SAFETY
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import with_discretisation
@@ -76,6 +76,12 @@ TEMPLATES = ("contact.h.in", "contact_library.c.in", "contact_config.h.in", "con
 
 ERROR_FILES = (BLINDNESS, "contact_error.c")
 """Further files of a library that estimates errors, which its own source includes, as they are."""
+
+ROD_FILES = ("touching_rods.c",)
+"""Further files of a library whose rods touch rods, which its own source includes, as they are."""
+
+SAMPLES_OF_ROD = 128
+"""Intervals between the sections of a rod that are looked at first beside another rod."""
 
 STABILITY_FILES = ("contact_stability.c", SECOND_VARIATION)
 """Further files of a library that judges stability."""
@@ -133,7 +139,11 @@ def contact_files(
         described["batches"] = ONE_BY_ONE
     words["derivatives"] = derivatives
     words |= accuracy_words(chosen.scene, error_estimate, verified)
-    further = (*(ERROR_FILES if chosen.richer else ()), *(STABILITY_FILES if chosen.judges_stability else ()))
+    further = (
+        *(ERROR_FILES if chosen.richer else ()),
+        *(STABILITY_FILES if chosen.judges_stability else ()),
+        *(ROD_FILES if chosen.scene.rods_touch_exactly else ()),
+    )
     files = {
         **rendered(words, (*VERBATIM, *further), TEMPLATES),
         **generated,
@@ -160,6 +170,10 @@ def _words(chosen: Chosen, names: Names, tables: Tables, generated: dict[str, st
         **title_words(names, chosen.scene, generated),
         **PLAIN_BUILD,
         **dict.fromkeys(("in_contact", "with_axes"), True),
+        "rods_touch_rods": chosen.scene.rods_touch_exactly,
+        "what_is_touched": "obstacles or each other" if chosen.scene.rods_touch_exactly else "obstacles",
+        "samples_of_rod": SAMPLES_OF_ROD,
+        "contact_rates": 5 if chosen.scene.rods_touch_exactly else 4,
         **input_words(free, names),
         "inputs": inputs,
         # C has no array without entries; parameters are behind the inputs.
@@ -279,15 +293,7 @@ def _manifest(model: Model, chosen: Chosen, names: Names) -> dict[str, Any]:
     free = build(chosen.scene, chosen.equations[0].grids.discretisation(chosen.scene))
     arrangements = []
     for own in chosen.equations:
-        touches = [
-            {
-                "body" if touch.of_body else "rod": touch.owner,
-                "obstacle": touch.obstacle,
-                "kind": touch.kind,
-                "at_tip": touch.reaches_tip,
-            }
-            for touch in own.state.touches
-        ]
+        touches = [_described(touch) for touch in own.state.touches]
         nominal = own.nominal
         sizes = {
             "unknowns": nominal.model.size,
@@ -301,7 +307,20 @@ def _manifest(model: Model, chosen: Chosen, names: Names) -> dict[str, Any]:
         "rods": [rod.name for rod in chosen.scene.rods],
         **({"bodies": [body.name for body in chosen.scene.bodies]} if chosen.scene.bodies else {}),
         "obstacles": [obstacle.name for obstacle in chosen.scene.obstacles],
+        **({"rods_touch_rods": True} if chosen.scene.rods_touch_exactly else {}),
         **({"actuators": actuator_entries(free)} if chosen.scene.actuators else {}),
         ARRANGEMENTS: arrangements,
         "discretisation": {name: asdict(own) for name, own in model.discretisation.items()},
+    }
+
+
+def _described(touch: Touch) -> dict[str, Any]:
+    """Describe a contact of an arrangement for the manifest; of two rods with the end of either at which it stays."""
+    if touch.other is not None:
+        return {"rod": touch.owner, "other_rod": touch.obstacle, "kind": touch.kind, "held_at": list(touch.held_at)}
+    return {
+        "body" if touch.of_body else "rod": touch.owner,
+        "obstacle": touch.obstacle,
+        "kind": touch.kind,
+        "at_tip": touch.reaches_tip,
     }

@@ -14,7 +14,8 @@ from cosserat_casadi.codegen.error_sources import turned_tables
 from cosserat_casadi.compiling.c_tables import numbers, reals, record, record_table
 from cosserat_casadi.equilibrium.blindness import TurnedElements
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations
-from cosserat_casadi.equilibrium.contact.gaps import ball_radius, body_pairs, pairs
+from cosserat_casadi.equilibrium.contact.contact_state import TIP, Touch, is_sought
+from cosserat_casadi.equilibrium.contact.gaps import ball_radius, body_pairs, pairs, rod_pairs
 from cosserat_casadi.equilibrium.stability import variations
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev
@@ -23,7 +24,6 @@ from cosserat_casadi.model.discrete_scene import Richer
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.model.watched import watched_cables, watched_sections
 from cosserat_casadi.rod.strain import DiscreteRod
-from cosserat_casadi.scene import ObstacleRecord
 
 POLYNOMIALS = {"legendre": chebyshev.legendre_polynomials, "chebyshev": chebyshev.chebyshev_polynomials}
 
@@ -72,10 +72,26 @@ class Tables:
         return [*self.rods, *(bodies if touches_bodies(self.chosen.scene) else [])]
 
     @property
-    def pairs(self) -> list[tuple[str, ObstacleRecord]]:
-        """Pairs of an owner of contacts and an obstacle that it must not enter."""
+    def pairs(self) -> list[tuple[int, int]]:
+        """Indices of owners of contacts with numbers of the obstacles, and of other rods, that they must not enter."""
+        return [*self.pairs_with_obstacles, *self.pairs_of_rods]
+
+    @property
+    def pairs_with_obstacles(self) -> list[tuple[int, int]]:
+        """Indices of the owners of contacts with the numbers of the obstacles that they must not enter."""
         scene = self.chosen.scene
-        return [*pairs(scene), *((body.name, obstacle) for body, obstacle in body_pairs(scene))]
+        owners = [*pairs(scene), *((body.name, obstacle) for body, obstacle in body_pairs(scene))]
+        return [(self.owners.index(owner), self.obstacles.index(obstacle.name)) for owner, obstacle in owners]
+
+    @property
+    def pairs_of_rods(self) -> list[tuple[int, int]]:
+        """Indices of first rods, with the numbers of second rods, which stand in the place of obstacles."""
+        rods = rod_pairs(self.chosen.scene)
+        return [(self.rods.index(rod), self.touched(other, is_rod=True)) for rod, other in rods]
+
+    def touched(self, name: str, *, is_rod: bool) -> int:
+        """Number of an obstacle, or of another rod, which are counted behind the obstacles."""
+        return len(self.obstacles) + self.rods.index(name) if is_rod else self.obstacles.index(name)
 
     def sizes(self, equations: ContactEquations) -> tuple[int, int, int]:
         """Count the unknowns, the forces and the places of an arrangement."""
@@ -236,12 +252,12 @@ class Tables:
 
     def _pair_table(self) -> str:
         entries = []
-        for owner, obstacle in self.pairs:
-            number = self.obstacles.index(obstacle.name)
+        for owner, number in self.pairs:
+            of_rods = number >= len(self.obstacles)
             fields = {
-                "rod": self.owners.index(owner),
+                "rod": owner,
                 "obstacle": number,
-                "distance": f"{self.name}_k_distance_{number}",
+                "distance": "0" if of_rods else f"{self.name}_k_distance_{number}",
             }
             entries.append(record(fields))
         return record_table("pair_entry", "PAIR", "PAIRS", entries)
@@ -282,8 +298,8 @@ class Tables:
         places: dict[float, int] = {}
         number = 0
         for touch in equations.state.touches:
-            for place in touch.moving:
-                if touch.owner == rod:
+            for owner, place in touch.sought:
+                if owner == rod:
                     places[float(place)] = number
                 number += 1
         return [places.get(end, -1) for end in equations.nominal.model.discretisation[rod].breaks]
@@ -294,9 +310,9 @@ class Tables:
         first_place = 0
         for touch in equations.state.touches:
             along = touch.moment_count(equations.nominal.modes[touch.owner]) if touch.is_line else 0
-            fields = {
+            fields: dict[str, object] = {
                 "rod": self.owners.index(touch.owner),
-                "obstacle": self.obstacles.index(touch.obstacle),
+                "obstacle": self.touched(touch.obstacle, is_rod=touch.other is not None),
                 "is_line": int(touch.is_line),
                 "ends": len(touch.ends),
                 "moving": len(touch.moving),
@@ -304,6 +320,8 @@ class Tables:
                 "along": along,
                 "first_place": first_place,
             }
+            if self.chosen.scene.rods_touch_exactly:
+                fields["held"] = _held(touch)
             entries.append(record(fields))
             first_force += len(touch.ends) + along
             first_place += len(touch.moving)
@@ -349,12 +367,28 @@ class Tables:
         return "\n".join(lines)
 
 
+def _held(touch: Touch) -> str:
+    """Places of a contact of two rods, and -1 in the stead of one that is sought."""
+    places = (0.0, 0.0) if touch.other is None else (touch.start, touch.other)
+    return "{" + numbers([-1.0 if is_sought(place) else float(place) for place in places]) + "}"
+
+
 def described(equations: ContactEquations) -> str:
     """Say in words who touches what in an arrangement."""
     words = []
     for touch in equations.state.touches:
+        if touch.other is not None:
+            words.append(f"{_section(touch.start)}{touch.owner} touches {_section(touch.other)}{touch.obstacle}")
+            continue
         where = "at its tip" if touch.reaches_tip else "at a point"
         if touch.is_line:
             where = "along a line to its tip" if touch.reaches_tip else "along a line"
         words.append(f"{touch.owner} touches {touch.obstacle} {where}")
     return ", ".join(words) or "no contact"
+
+
+def _section(place: float) -> str:
+    """Words for the place of a contact on one of two rods, before the name of the rod."""
+    if is_sought(place):
+        return "a section of "
+    return "the tip of " if place == TIP else "the base of "

@@ -148,6 +148,13 @@ static void contact_rates(const arrangement *at, const real *z_rate, int number,
   rates[1] = !is_line ? rates[0] : entry->moving > 1 ? places[1] : 0;
   rates[2] = unit * forces[0];
   rates[3] = is_line ? unit * forces[1] : 0;
+#ifdef RODS_TOUCH_RODS
+  rates[4] = 0;
+  if (other_rod(entry->obstacle) >= 0) {
+    rates[0] = rates[1] = entry->held[0] < 0 ? places[0] : 0;
+    rates[4] = entry->held[1] < 0 ? places[entry->moving - 1] : 0;
+  }
+#endif
 }
 
 /* Derivatives by the implicit function theorem, within the arrangement of contacts; either may be null. */
@@ -238,6 +245,9 @@ contact_status contact_margins(const contact_state *state, real *force, real *ga
   real index[4];
   call(at->nodes, state->z, state->inputs, work->nodes, index, work);
   *force = *gap = HUGE_VAL;
+#ifdef RODS_TOUCH_RODS
+  sample_rods(at, state->z, work->nodes, work->samples[0]);
+#endif
   for (int k = 0; k < at->touches; k++) *force = smaller(*force, least_force(at, state->z, k, largest, 1));
   for (int p = 0; p < PAIRS; p++) *gap = smaller(*gap, least_gap(at, state->z, PAIR + p, work));
   return CONTACT_CONVERGED;
@@ -256,6 +266,9 @@ int contact_contacts(const contact_state *state, contact_contact *contacts, work
     /* A body has one section, without an abscissa. */
     named->from = own.rod < RODS ? own.start : 0;
     named->to = own.rod < RODS ? own.end : 0;
+#ifdef RODS_TOUCH_RODS
+    named->other_place = own.other;
+#endif
     memcpy(named->force, work->contact_forces + 3 * k, sizeof named->force);
     memcpy(named->point_forces, work->point_forces + 2 * k, sizeof named->point_forces);
   }

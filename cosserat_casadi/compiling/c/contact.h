@@ -35,7 +35,13 @@ enum {
   TRIES = CONTACT_TRIES,          /* arrangements that are solved for one change of the inputs */
   CANDIDATES = CONTACT_CANDIDATES,
   POSE_SIZE = 7,    /* position and quaternion */
+#ifdef RODS_TOUCH_RODS
+  OBSTACLES = CONTACT_OBSTACLES, /* behind them rods are counted, which others touch in their place */
+  SAMPLES_OF_ROD = CONTACT_SAMPLES_OF_ROD, /* intervals between the sections of a rod that are looked at first */
+  CONTACT_RATES = 5 /* from, to, the forces there, and the place on another rod */
+#else
   CONTACT_RATES = 4 /* from, to, and the forces there */
+#endif
 };
 
 /* A generated function of z and of the inputs, or of a point. */
@@ -51,6 +57,9 @@ typedef struct {
   int first_force; /* among the forces: of its ends, then along it */
   int along;       /* coefficients of the force along a line */
   int first_place; /* among the places */
+#ifdef RODS_TOUCH_RODS
+  real held[2]; /* ends of the rod, and of another rod that it touches, at which the place stays; -1 for a sought one */
+#endif
 } contact_entry;
 
 /* The elements of a rod in an arrangement. */
@@ -122,6 +131,11 @@ typedef struct {
 #endif
 } rod_entry;
 
+#ifdef RODS_TOUCH_RODS
+/* Number of the rod that another touches in the place of an obstacle; negative for an obstacle. */
+static int other_rod(int obstacle) { return obstacle - OBSTACLES; }
+
+#endif
 /* A rod and an obstacle that it must not enter. */
 typedef struct {
   int rod;

@@ -97,6 +97,9 @@ static real contact_distance(const arrangement *at, const real *z, const arrange
     const touch other = touch_at(richer, fine, k);
     unit = larger(unit, larger(ROD[entry->rod].force_unit, norm_of(work->contact_forces + 3 * k, 3)));
     places = larger(places, larger(fabs(one.start - other.start), fabs(one.end - other.end)));
+#ifdef RODS_TOUCH_RODS
+    places = larger(places, fabs(one.other - other.other));
+#endif
     for (int i = 3 * k; i < 3 * k + 3; i++) {
       difference = larger(difference, fabs(forces[i] - work->contact_forces[i]));
     }

@@ -20,6 +20,9 @@ static touch touch_at(const arrangement *at, const real *z, int number) {
   const contact_entry *entry = at->touch + number;
   const real *places = z + at->unknowns + at->forces + entry->first_place;
   touch made = {.rod = entry->rod, .obstacle = entry->obstacle, .is_line = entry->is_line, .start = 1, .end = 1};
+#ifdef RODS_TOUCH_RODS
+  if (other_rod(entry->obstacle) >= 0) return touch_of_rods(entry, places);
+#endif
   if (entry->moving > 0) made.start = places[0];
   if (entry->ends == 1) made.end = made.start;
   else if (entry->moving > 1) made.end = places[1];
@@ -71,6 +74,10 @@ static real pull_of(const arrangement *at, const real *z, int number, real large
 static real gap_of_section(const arrangement *at, const real *z, const pair_entry *pair, real X, workspace *work) {
   real position[3];
   position_at(at, z, work->nodes, pair->rod, X, position);
+#ifdef RODS_TOUCH_RODS
+  real place;
+  if (other_rod(pair->obstacle) >= 0) return gap_from_rod(at, z, pair->rod, pair->obstacle, position, X, &place, work);
+#endif
   return gap_at(pair, position, X, work);
 }
 
@@ -180,6 +187,9 @@ static int find_inside(const arrangement *at, const real *z, const pair_entry *p
    number. */
 static int find_penetrations(const arrangement *at, const real *z, real admitted, penetration *found, workspace *work) {
   int count = 0;
+#ifdef RODS_TOUCH_RODS
+  sample_rods(at, z, work->nodes, work->samples[0]);
+#endif
   for (int p = 0; p < PAIRS; p++) count = find_inside(at, z, PAIR + p, admitted, found, count, work);
   return count;
 }

@@ -57,6 +57,12 @@ static int set_places(const arrangement *at, const candidate *wanted, real *z) {
     const touch *own = wanted->touches + k;
     const int moving = entry->is_line ? 1 + (own->end < 1) : own->start < 1;
     if (entry->rod != own->rod || entry->obstacle != own->obstacle) return 0;
+#ifdef RODS_TOUCH_RODS
+    if (other_rod(entry->obstacle) >= 0) {
+      if (!set_places_of_rods(entry, own, z + at->unknowns + at->forces + entry->first_place)) return 0;
+      continue;
+    }
+#endif
     if (entry->is_line != own->is_line || entry->moving != moving) return 0;
     real *places = z + at->unknowns + at->forces + entry->first_place;
     if (moving > 0) places[0] = own->start;
@@ -119,6 +125,37 @@ static void instead_of_entering(const penetration *inside, const touch *beside, 
   }
 }
 
+#ifdef RODS_TOUCH_RODS
+/* Adds contacts that hold off a stretch of a rod inside another rod, further ones or in place of the contact beside it. */
+static void instead_of_meeting(const arrangement *at, const real *z, const penetration *inside, const touch *beside,
+                               change *made, workspace *work) {
+  real position[3], place;
+  position_at(at, z, work->nodes, inside->rod, inside->deepest, position);
+  (void)gap_from_rod(at, z, inside->rod, inside->obstacle, position, inside->deepest, &place, work);
+  const touch met = of_rods(inside->rod, inside->obstacle, at_end(inside->deepest), at_end(place));
+  if (!beside) {
+    offer(made, 1, met, met);
+    return;
+  }
+  /* An end that lifts off leaves a section inwards to touch; two rods may touch at two places. */
+  const int is_held = is_end(beside->start) || is_end(beside->other);
+  if (is_held) offer(made, 1, met, met);
+  offer(made, 2, *beside, met);
+  if (!is_held) offer(made, 1, met, met);
+}
+
+/* Adds replacements of a contact of rods whose equations have no solution near by: at the other kind of place on either
+   rod. */
+static void instead_of_failing(touch own, change *made) {
+  for (int ways = 1; ways < 4; ways++) {
+    touch other = own;
+    if (ways & 2) other.start = other.end = otherwise_at(own.start);
+    if (ways & 1) other.other = otherwise_at(own.other);
+    offer(made, 1, other, other);
+  }
+}
+
+#endif
 /* Queues a candidate to be tried next, or last; drops it if the queue is full. */
 static void push(workspace *work, int next, const candidate *added) {
   if (work->waiting == CANDIDATES) return;
@@ -179,6 +216,12 @@ static int find_faults(const arrangement *at, const real *z, change *changes, re
     }
     changes[count].touch = number;
     changes[count].options = 0;
+#ifdef RODS_TOUCH_RODS
+    if (other_rod(found[i].obstacle) >= 0) {
+      instead_of_meeting(at, z, found + i, number < 0 ? 0 : &beside, changes + count++, work);
+      continue;
+    }
+#endif
     instead_of_entering(found + i, number < 0 ? 0 : &beside, changes + count++);
   }
   return count;
@@ -205,6 +248,11 @@ static void push_beside(const candidate *failed, workspace *work) {
   for (int k = 0; k < failed->count; k++) {
     const touch own = failed->touches[k];
     change options = {.touch = k, .options = 0};
+#ifdef RODS_TOUCH_RODS
+    if (other_rod(own.obstacle) >= 0) {
+      instead_of_failing(own, &options);
+    } else
+#endif
     if (own.is_line) {
       instead_of_pulling(own, &options);
     } else if (own.end == 1) {

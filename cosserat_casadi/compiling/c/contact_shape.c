@@ -188,6 +188,10 @@ static real clear_distance(const pair_entry *pair, real X, const real *start, co
   return larger(larger((gaps - share) / 4, DEEP - share / 2) / FASTEST, CLOSEST);
 }
 
+#ifdef RODS_TOUCH_RODS
+static int rods_pass(const arrangement *from, const real *old, const arrangement *to, const real *z, workspace *work);
+
+#endif
 /* Whether, from one shape to the other, every section moves little and none passes through an obstacle. The nodes of
    both shapes stand in the workspace. Each step along the rod is at least CLOSEST. */
 static int is_near(const arrangement *from, const real *old, const arrangement *to, const real *z, workspace *work) {
@@ -203,6 +207,9 @@ static int is_near(const arrangement *from, const real *old, const arrangement *
       real step = FARTHEST;
       for (int p = 0; p < PAIRS; p++) {
         if (PAIR[p].rod != rod) continue;
+#ifdef RODS_TOUCH_RODS
+        if (other_rod(PAIR[p].obstacle) >= 0) continue;
+#endif
         if (leads_through(PAIR + p, X, start, end, way, work)) return 0;
         step = smaller(step, clear_distance(PAIR + p, X, start, end, way, work));
       }
@@ -210,5 +217,8 @@ static int is_near(const arrangement *from, const real *old, const arrangement *
       X = smaller(X + step, 1);
     }
   }
+#ifdef RODS_TOUCH_RODS
+  if (rods_pass(from, old, to, z, work)) return 0;
+#endif
   return 1;
 }

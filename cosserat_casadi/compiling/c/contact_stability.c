@@ -54,13 +54,43 @@ static void add_slide(const arrangement *at, int row, real stiffness, const real
   }
 }
 
+#ifdef RODS_TOUCH_RODS
+/* Appends the constraints of two rods that press each other, whose rows of the Jacobian begin at one; the number of all
+   constraints is returned. Both places slide if the second derivative of the gap by them is positive: three of its entries
+   are given. The squares of the second variation by them are completed, in the rows of the Jacobian. */
+static int hold_rods(const arrangement *at, int row, int moving, const real *bends, real stiffness, const real *scale,
+                     workspace *work, int held, real *matrix) {
+  const real first = bends[0], mixed = bends[1], last = bends[2];
+  const real half = (first - last) / 2;
+  const real least = moving > 1 ? (first + last) / 2 - sqrt(half * half + mixed * mixed) : first;
+  const int slides = moving > 0 && least > FLAT;
+  for (int i = 0; i < (slides ? 1 : 1 + moving); i++) held = hold(at, row + i, scale, work, held, matrix);
+  if (!slides) return held;
+  if (moving == 1) {
+    add_slide(at, row + 1, stiffness / first, scale, work, matrix);
+    return held;
+  }
+  for (int j = 0; j < at->unknowns; j++) {
+    real *rows = work->jacobian + j * at->size + row;
+    rows[1] -= mixed / last * rows[2];
+  }
+  add_slide(at, row + 2, stiffness / last, scale, work, matrix);
+  add_slide(at, row + 1, stiffness / (first - mixed * mixed / last), scale, work, matrix);
+  return held;
+}
+
+#endif
 /* Appends constraints for the contacts that press; returns the number of all constraints. */
 static int hold_contacts(const problem *judged, const real *scale, int held, real *matrix) {
   const arrangement *at = judged->at;
   const real *z = judged->state->z;
   workspace *work = judged->work;
   const real largest = largest_force(at, z);
+#ifdef RODS_TOUCH_RODS
+  real bends[3 * CONTACT_TOUCHES];
+#else
   real bends[CONTACT_TOUCHES];
+#endif
   int row = at->unknowns;
   call(at->bends, z, judged->state->inputs, bends, 0, work);
   for (int k = 0; k < at->touches; k++) {
@@ -68,6 +98,16 @@ static int hold_contacts(const problem *judged, const real *scale, int held, rea
     const int rows = entry->ends + entry->moving + entry->along;
     const real force = z[at->unknowns + entry->first_force];
     const int presses = entry->is_line || force > PRESSING * largest;
+#ifdef RODS_TOUCH_RODS
+    if (other_rod(entry->obstacle) >= 0) {
+      const real *own = bends + at->touches + 2 * k;
+      const real three[3] = {bends[k], own[0], own[1]};
+      const real stiffness = force * ROD[entry->rod].energy;
+      if (presses) held = hold_rods(at, row, entry->moving, three, stiffness, scale, work, held, matrix);
+      row += rows;
+      continue;
+    }
+#endif
     const int slides = !entry->is_line && entry->moving && bends[k] > FLAT;
     for (int i = 0; presses && i < (slides ? 1 : rows); i++) held = hold(at, row + i, scale, work, held, matrix);
     if (presses && slides) add_slide(at, row + 1, force / bends[k] * ROD[entry->rod].energy, scale, work, matrix);

@@ -79,6 +79,7 @@ def with_contact_error(coarse: Solution, fine: Solution) -> Solution:
     if same_contacts(coarse, fine):
         for first, second in zip(coarse.contacts, fine.contacts, strict=True):
             distances += [abs(first.start - second.start), abs(first.end - second.end)]
+            distances += np.abs(np.subtract(first.on_rods or (), second.on_rods or ())).tolist()
             forces = np.concatenate([first.force - second.force, np.subtract(first.ends, second.ends)])
             distances.append(float(np.abs(forces).max()) / largest)
             distances += [distance / largest for distance in _between_sections(first, second)]

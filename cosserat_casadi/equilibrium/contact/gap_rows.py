@@ -99,14 +99,21 @@ def _body_gap(system: System, touch: Touch) -> Matrix:
 def _rods_gap(system: System, touch: Touch) -> list[Matrix]:
     """Gap of two rods at a section of each, and its derivatives by the moving places, over the length of the first."""
     own, other = (RodSurface(system, rod) for rod in touch.rods)
-    assert touch.other is not None, "two rods"
-    apart = own.centre(touch.start) - other.centre(touch.other)
+    apart = centres_apart(system, touch)
     normal, _ = across(apart)
     gap = ca.dot(normal, apart) - own.radius(touch.start) - other.radius(touch.other)
     sides = [(own, touch.start, normal), (other, touch.other, -normal)]
     slopes = [ca.dot(normal, side.rate(place)) - side.taper for side, place, normal in sides if is_sought(place)]
     length = system.discrete.rods[touch.owner].properties.length
     return [row / length for row in (gap, *slopes)]
+
+
+def centres_apart(system: System, touch: Touch) -> Matrix:
+    """Vector from the touching section of the second of two rods to that of the first, world axes, 3×1, m."""
+    own, other = (RodSurface(system, rod) for rod in touch.rods)
+    assert touch.other is not None, "two rods"
+    apart: Matrix = own.centre(touch.start) - other.centre(touch.other)
+    return apart
 
 
 @dataclass(frozen=True)
