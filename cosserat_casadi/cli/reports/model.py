@@ -242,7 +242,7 @@ def _print_price(console: Console, model: Model, cost: Price) -> None:
 
 
 def _load_table(model: Model, of_effects: Mapping[str, Count]) -> Table:
-    table = table_of("load or actuator", "kind", "free inputs", right=["adds to the residual"])
+    table = table_of("load, actuator or contact", "kind", "free inputs", right=["adds to the residual"])
     for cause in model.scene.causes:
         prefix = f"{cause.name}."
         fields = [name.removeprefix(prefix) for name in model.inputs.names if name.startswith(prefix)]
