@@ -14,6 +14,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
 from cosserat_casadi import Solution, build, discretise, export, parse_scene, solve
+from cosserat_casadi import follow as follow_input
 from cosserat_casadi.equilibrium.contact.cushions import Barriers, cushioned
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
 from cosserat_casadi.equilibrium.contact.passing_through import SECTIONS, is_inside_between
@@ -142,6 +143,21 @@ def test_a_rod_touches_a_thin_bar(height: float, radius: float, tip: tuple[float
     x, _, z = solution.tip().position
     assert_allclose([x, z], tip, rtol=0, atol=5e-5)
     assert solution.stable
+
+
+def test_a_force_does_not_take_a_rod_to_the_other_side_of_a_thin_bar() -> None:
+    """From the cushion of twice the radius Newton's method leads under the bar; from contact at less force it does not.
+
+    The tip is where the path in contact leads.
+    """
+    stiff = PLANAR.replace("length = 1.0", "length = 0.8").replace("bending_y = 1.0", "bending_y = 1.4")
+    scene = parse_scene(HEAD + stiff + push(-8.0) + bar("bar", 0.51, -0.05, 0.004))
+    model = build(scene, discretise(scene, 4, 8))
+    solution = solve(model)
+    assert solution.converged, solution.message
+    path = follow_input(model, "push.force", [0.0, 0.0, -8.0])
+    assert path.converged
+    assert_allclose(solution.tip().position, path.solution(-1).tip().position, rtol=0, atol=1e-9)
 
 
 HEAVY = PLANAR + weight(-49.05) + plane("t", 0.0)

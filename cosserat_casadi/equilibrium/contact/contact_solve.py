@@ -29,7 +29,13 @@ from cosserat_casadi.equilibrium.contact.contact_state import (
     state_in,
     without_contacts,
 )
-from cosserat_casadi.equilibrium.contact.cushions import Pressure, approach, first_state, pressed_alone
+from cosserat_casadi.equilibrium.contact.cushions import (
+    Pressure,
+    approach,
+    first_state,
+    has_thin_obstacles,
+    pressed_alone,
+)
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, runs
 from cosserat_casadi.equilibrium.contact.passing_through import passes_through
 from cosserat_casadi.equilibrium.load_path import column
@@ -126,9 +132,11 @@ def solve_contact(
         admits=lambda shape: not passes_through(cushioned, shape, deepest=inf),
         unmet_before=unmet_before,
     )
-    if not cushioned.converged and not holds and bare.rods_touch_exactly:
-        found = _loads_grown_in_contact(settling, cushioned)
-        holds = found is not None
+    # From thicker cushions Newton's method may take a rod to the other side of a thin bar.
+    may_grow = has_thin_obstacles(bare) or (bare.rods_touch_exactly and not cushioned.converged)
+    grown = _loads_grown_in_contact(settling, cushioned) if may_grow and not holds else None
+    if grown is not None:
+        found, holds = grown, True
     if not cushioned.converged and not holds:
         return replace(cushioned, iterations=settling.iterations)
     if found is None:

@@ -171,9 +171,9 @@ def _thickened(scene: scenes.Scene, values: Values) -> scenes.Scene:
 
     An obstacle grows by half its distance from the unloaded rods and bodies at most, so that they stay outside it.
     """
-    least = THINNEST_CUSHION * max(rod.length for rod in scene.rods)
-    if all(obstacle.thickness >= 2 * least for obstacle in scene.obstacles):
+    if not has_thin_obstacles(scene):
         return scene
+    least = _least_radius(scene)
     model = cushioned(scene)
     rods = model.discrete.rods
     unloaded = Barriers(model, model.pack(values)).unloaded
@@ -188,6 +188,16 @@ def _thickened(scene: scenes.Scene, values: Values) -> scenes.Scene:
         return obstacle.model_copy(update={"radius": float(radius)})
 
     return scene.model_copy(update={"obstacles": tuple(map(thick, scene.obstacles))})
+
+
+def has_thin_obstacles(scene: scenes.Scene) -> bool:
+    """Whether a scene has bars or balls that are thinner than their cushions may be."""
+    return any(obstacle.thickness < 2 * _least_radius(scene) for obstacle in scene.obstacles)
+
+
+def _least_radius(scene: scenes.Scene) -> float:
+    """Least radius of a cushion, m."""
+    return THINNEST_CUSHION * max(rod.length for rod in scene.rods)
 
 
 def _softened(contact: scenes.RodContact, scene: scenes.Scene, factor: float) -> scenes.RodContact:
