@@ -15,7 +15,13 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids, richer
 from cosserat_casadi.equilibrium.contact.contact_search import Settling
 from cosserat_casadi.equilibrium.contact.contact_solve import LEAST_TOLERANCE, solve_contact
-from cosserat_casadi.equilibrium.contact.contact_state import ContactState, state_in, with_contacts, without_contacts
+from cosserat_casadi.equilibrium.contact.contact_state import (
+    ContactState,
+    Touch,
+    state_in,
+    with_contacts,
+    without_contacts,
+)
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import ExportError, Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray
@@ -78,7 +84,21 @@ class _Met:
 
     def add(self, state: ContactState) -> None:
         """Add an arrangement, unless it is known."""
+        state = self._in_order_of_c(state)
         self.states.setdefault(self.key(state), state)
+
+    def _in_order_of_c(self, state: ContactState) -> ContactState:
+        """The contacts in the order of C: those at one section by the numbers of obstacles, and not by their names."""
+        obstacles = [obstacle.name for obstacle in self.scene.obstacles]
+        rods = [rod.name for rod in self.scene.rods]
+
+        def number(touch: Touch) -> int:
+            if touch.other is None:
+                return obstacles.index(touch.obstacle)
+            return len(obstacles) + rods.index(touch.obstacle)
+
+        touches = sorted(state.touches, key=lambda touch: (touch.of_body, touch.owner, touch.start, number(touch)))
+        return ContactState(tuple(touches))
 
     def add_path(self, path: ContactPath) -> None:
         """Add the arrangements of a path between its load cases, each where it was met last."""
@@ -168,8 +188,8 @@ def chosen_arrangements(
     names = [*layout.names, *parameters.names]
     own = solve_contact(scene, grids, layout.unpack(given))
     _check(own, "the scene's own inputs")
-    first = state_in(own.model.scene)
-    met.add(first)
+    met.add(state_in(own.model.scene))
+    first = next(iter(met.states))
     own_values = before = np.append(given, theta)
     for number, row in enumerate([] if load_cases is None else load_cases, start=1):
         # Of a row without parameters they are the scene's own.
@@ -187,7 +207,7 @@ def chosen_arrangements(
         before = values
     met.add(ContactState(()))
     met.check()
-    start = list(met.states).index(met.key(first))
+    start = list(met.states).index(first)
     answers, finer = (
         [ContactEquations(named, given, own_grids, state, theta) for state in met.states.values()]
         for own_grids in (grids, richer(grids, scene))
