@@ -126,18 +126,6 @@ def shared_names(scene: SceneTables) -> Iterator[Fault]:
         taken.update({name: f"{key}[{i}]" for name, (i, _) in scene.named(key).items()})
 
 
-def obstacles_named_as_rods(scene: SceneTables) -> Iterator[Fault]:
-    """An obstacle has the name of a rod where rods touch rods without a width: contacts could not be told apart."""
-    if not any(table.get("exact") is True for _, table in scene.tables("rod_contacts")):
-        return
-    rods = scene.named("rods")
-    for i, table in scene.tables("obstacles"):
-        name = table.get("name")
-        if isinstance(name, str) and name in rods:
-            problem = f"{shown(name)} is already the name of rods[{rods[name][0]}], and rods touch without a width"
-            yield Fault(("obstacles", i, "name"), problem, "give the obstacle another name")
-
-
 def dangling_names(scene: SceneTables) -> Iterator[Fault]:
     """A table refers to an entry that the scene does not have."""
     if not scene.named("rods") and not scene.named("tubes"):
@@ -366,7 +354,6 @@ def measured_twice(scene: SceneTables) -> Iterator[Fault]:
 RULES: tuple[Rule, ...] = (
     repeated_names,
     shared_names,
-    obstacles_named_as_rods,
     dangling_names,
     bases_on_nothing,
     bodies_that_nobody_holds,

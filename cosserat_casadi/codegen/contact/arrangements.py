@@ -15,13 +15,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids, richer
 from cosserat_casadi.equilibrium.contact.contact_search import Settling
 from cosserat_casadi.equilibrium.contact.contact_solve import LEAST_TOLERANCE, solve_contact
-from cosserat_casadi.equilibrium.contact.contact_state import (
-    ContactState,
-    Touch,
-    state_in,
-    with_contacts,
-    without_contacts,
-)
+from cosserat_casadi.equilibrium.contact.contact_state import ContactState, state_in, with_contacts, without_contacts
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import ExportError, Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray
@@ -83,22 +77,12 @@ class _Met:
     states: dict[object, ContactState] = field(default_factory=dict)
 
     def add(self, state: ContactState) -> None:
-        """Add an arrangement, unless it is known."""
-        state = self._in_order_of_c(state)
-        self.states.setdefault(self.key(state), state)
-
-    def _in_order_of_c(self, state: ContactState) -> ContactState:
-        """The contacts in the order of C: those at one section by the numbers of obstacles, and not by their names."""
-        obstacles = [obstacle.name for obstacle in self.scene.obstacles]
-        rods = [rod.name for rod in self.scene.rods]
-
-        def number(touch: Touch) -> int:
-            if touch.other is None:
-                return obstacles.index(touch.obstacle)
-            return len(obstacles) + rods.index(touch.obstacle)
-
-        touches = sorted(state.touches, key=lambda touch: (touch.of_body, touch.owner, touch.start, number(touch)))
-        return ContactState(tuple(touches))
+        """Add an arrangement, unless it is known. Contacts at one section are in the order of the scene, as in C."""
+        names = [record.name for record in (*self.scene.obstacles, *self.scene.rods)]
+        ordered = ContactState(
+            tuple(sorted(state.touches, key=lambda t: (t.of_body, t.owner, t.start, names.index(t.obstacle))))
+        )
+        self.states.setdefault(self.key(ordered), ordered)
 
     def add_path(self, path: ContactPath) -> None:
         """Add the arrangements of a path between its load cases, each where it was met last."""
