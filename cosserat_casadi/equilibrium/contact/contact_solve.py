@@ -126,9 +126,10 @@ def solve_contact(
         admits=lambda shape: not passes_through(cushioned, shape, deepest=inf),
         unmet_before=unmet_before,
     )
-    if not cushioned.converged and not holds and bare.rods_touch_exactly:
-        found = _loads_grown_in_contact(settling, cushioned)
-        holds = found is not None
+    if not holds and bare.rods_touch_exactly:
+        grown = _loads_grown_in_contact(settling, cushioned)
+        if grown is not None:
+            found, holds = grown, True
     if not cushioned.converged and not holds:
         return replace(cushioned, iterations=settling.iterations)
     if found is None:
