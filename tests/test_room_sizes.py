@@ -21,7 +21,7 @@ LINES = {
     "constraints": 1_030,
     "control": 2_800,
     "environments": 330,
-    "equilibrium": 8_255,
+    "equilibrium": 8_260,
     "estimation": 1_730,
     "identification": 4_643,
     "loads": 2_365,

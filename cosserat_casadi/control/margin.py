@@ -116,7 +116,7 @@ def _quaternion_growth(model: Model, x: Matrix) -> Matrix:
     at_start = quaternion_growth(model, np.zeros(model.size))
     # The growth is affine in x, each entry in its own unknown.
     slopes = quaternion_growth(model, np.ones(model.size)) - at_start
-    return ca.DM(at_start) + ca.DM(slopes) * ca.repmat(x.T, len(slopes), 1)
+    return ca.sparsify(ca.DM(at_start)) + ca.sparsify(ca.DM(slopes)) * ca.repmat(x.T, len(slopes), 1)
 
 
 def _elastic(model: Model) -> FloatArray:

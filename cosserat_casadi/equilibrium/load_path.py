@@ -18,7 +18,7 @@ from cosserat_casadi.model.contact_layers import inexact_beside, longest_step
 from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.model.unloaded_response import NOISE
 from cosserat_casadi.numerics.broyden import Jacobian, solved
-from cosserat_casadi.numerics.continuation import ContinuationSettings, Path
+from cosserat_casadi.numerics.continuation import ContinuationSettings, Path, PathPoint
 
 FIRST_STEP = 0.25
 """Longest first step of an assembly with floating frames: the compliance falls to (3/4)³ in it."""
@@ -94,6 +94,10 @@ def paced_by_shape(path: Path, model: Model) -> Path:
     def growth(s: float) -> float:
         return PACE * (1.0 - s) ** (PACE - 1)
 
+    def admits(before: PathPoint, after: PathPoint) -> bool:
+        (first, start), (last, end) = before, after
+        return path.admitted((first, load_factor(start)), (last, load_factor(end)))
+
     return replace(
         path,
         residual=lambda x, s: path.residual(x, load_factor(s)),
@@ -102,6 +106,7 @@ def paced_by_shape(path: Path, model: Model) -> Path:
         tangent=None if path.tangent is None else PACE * path.tangent,
         step_weights=model.step_weights * shape,
         first_step=path.first_step / PACE,
+        admits=admits,
     )
 
 

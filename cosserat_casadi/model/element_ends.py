@@ -41,6 +41,9 @@ At 1e-12 a rod with a load at each of two places is still solved to its toleranc
 LONGEST_TURN = 40 * np.pi
 """Largest angle, rad, through which sections turn along an element of an unloaded rod."""
 
+MOST_TURNS = 1280
+"""Largest number of turns of an unloaded rod: with more than 64 elements a solve takes minutes."""
+
 SECTIONS_OF_TURN = 64
 """Sections of an element at which its unloaded curvature is summed."""
 
@@ -72,10 +75,18 @@ def element_ends(scene: scenes.Scene, rod: str) -> tuple[float, ...]:
 
 
 def _cut_coils(record: scenes.Rod, ends: tuple[float, ...]) -> tuple[float, ...]:
-    """Element ends with elements halved until none of the unloaded rod turns more than LONGEST_TURN."""
+    """Element ends with elements halved until none of the unloaded rod turns more than LONGEST_TURN.
+
+    Raises:
+        SceneError: the rod turns more than MOST_TURNS times.
+    """
     turns = unloaded_turns(record, ends)
     if max(turns) <= LONGEST_TURN:
         return ends
+    times = sum(turns) / (2 * np.pi)
+    if not times <= MOST_TURNS:
+        problem = f"turns the rod about {times:.3g} times; at most {MOST_TURNS} turns are resolved"
+        raise SceneError(Problem(f"rods.{record.name}.intrinsic", problem, "curvature is in 1/m; or join shorter rods"))
     halves = [
         (start + end) / 2 for (start, end), turn in zip(pairwise(ends), turns, strict=True) if turn > LONGEST_TURN
     ]

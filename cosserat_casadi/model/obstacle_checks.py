@@ -63,26 +63,14 @@ def refuse_obstacles(scene: scenes.Scene, what: str, remedy: str = WIDTH) -> Non
     Raises:
         SceneError: the scene has obstacles without a width, or rods that touch rods so.
     """
-    if remedy != RELAXED:
-        refuse(exact_rods(scene, what))
+    if remedy != RELAXED and scene.rods_touch_exactly:
+        problem = f"{what} has no contact of rods without a width"
+        advice = "leave exact out, for a contact that is smooth; or solve, simulate or export it"
+        refuse(Problem(f"rod_contacts[{n}].exact", problem, advice) for n in range(len(scene.rod_contacts)))
     if scene.touches_exactly:
         problem = f"{what} finds no exact contact: its rods would pass through them"
         where = "rod_contacts" if scene.rods_touch_exactly else "obstacles"
         raise SceneError(Problem(where, problem, remedy.format(width=suggested_width(scene))))
-
-
-def exact_rods(scene: scenes.Scene, what: str) -> Iterator[Problem]:
-    """Problems of exact contact between rods for a use that does not support it.
-
-    Args:
-        scene: the scene.
-        what: the use in words.
-    """
-    for number, contact in enumerate(scene.rod_contacts):
-        if contact.exact:
-            problem = f"{what} has no contact of rods without a width"
-            remedy = "leave exact out, for a contact that is smooth; or solve, simulate or export it"
-            yield Problem(f"rod_contacts[{number}].exact", problem, remedy)
 
 
 def refuse_held_by_contact(scene: scenes.Scene) -> None:

@@ -175,16 +175,15 @@ class SurfaceSliding:
         if len(self._sides) == 1:
             parts = [_section_derivatives(poses, rates, x, inputs, section, change, held, along)]
         else:
-            # Generated code calls what is of one rod, for each pair of it.
-            on_sides = zip(self._sides, ca.vertsplit(held, 12), ca.vertsplit(along, 12), strict=True)
-            parts = [
-                _routine(side, span, len(self._sides)).call([x, inputs, v, rate, section[span], change[span, :], *own])
-                for (side, span), *own in on_sides
-            ]
-        by_x, by_inputs, shifted, *sums = (
-            ca.vertcat(*blocks) if place < 3 else sum(blocks[1:], blocks[0])
-            for place, blocks in enumerate(zip(*parts, strict=True))
-        )
+            parts = []
+            # Generated code calls one routine for the section of a rod, in each pair that the rod is in.
+            for number, (side, span) in enumerate(self._sides):
+                entries = slice(12 * number, 12 * number + 12)
+                arguments = [x, inputs, v, rate, section[span], change[span, :], held[entries], along[entries, :]]
+                parts.append(_routine(side, span, len(self._sides)).call(arguments))
+        of_pose, of_sums = [part[:3] for part in parts], [part[3:] for part in parts]
+        by_x, by_inputs, shifted = (ca.vertcat(*blocks) for blocks in zip(*of_pose, strict=True))
+        sums = [sum(blocks[1:], blocks[0]) for blocks in zip(*of_sums, strict=True)]
 
         def chained(of_poses: Matrix, of_rates: Matrix, of_generalised: Matrix, shift: Matrix | None = None) -> Matrix:
             """Derivatives, (4 + n)×k, from those of poses, of τᵀq̇, of the generalised force, and of abscissae."""

@@ -106,7 +106,7 @@ width = 5e-4
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
-        """Faults of rods without a radius, of rods that always touch, and of obstacles in exact contact."""
+        """Faults of rods without a radius, of rods that always touch, and of obstacles beside them."""
         named = given.get("rods")
         known = scene.named("rods")
         listed = named if isinstance(named, list | tuple) else known
@@ -131,6 +131,9 @@ width = 5e-4
         if exact:
             for name in names:
                 yield from without_exact_contact(name, known[name][1], "leave exact out, for a contact that is smooth")
+                if name in scene.named("obstacles"):
+                    problem = f"{name!r} is an obstacle too, so that contacts with either could not be told apart"
+                    yield Fault((), problem, "give the obstacle another name")
 
 
 def _without_radius(name: str, rod: Table, width: Any) -> Iterator[Fault]:

@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import (
     Outcome,
     Scene,
+    SceneError,
     Solution,
     build,
     discretise,
@@ -202,6 +203,11 @@ def test_a_rod_of_many_turns_is_cut_into_equal_elements() -> None:
     assert element_ends(drawn(19, [0.0, 0.0, 0.0], 1e-3), "rod") == (0.0, 1.0)
     ends = element_ends(drawn(45, [0.0, 0.0, 0.0], 1e-3), "rod")
     assert_allclose(ends, [0.0, 0.25, 0.5, 0.75, 1.0], rtol=0, atol=1e-15)
+
+
+def test_a_curvature_in_a_wrong_unit_is_told_at_once() -> None:
+    with pytest.raises(SceneError, match=r"rods.rod.intrinsic: turns the rod about 1\.4e\+03 times"):
+        element_ends(drawn(1400, [0.0, 0.0, 0.0], 1e-3), "rod")
 
 
 @pytest.mark.slow

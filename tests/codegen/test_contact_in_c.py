@@ -246,6 +246,24 @@ def test_what_the_library_does_not_know_is_not_found(table: ContactLibrary, tmp_
     assert table.loaded.solve(down(50.0)).converged
 
 
+@pytest.mark.slow
+def test_obstacles_that_a_tip_touches_at_once_in_any_order(tmp_path: Path) -> None:
+    """The tip comes to rest between two planes, whose names are not in the order of the scene."""
+    floor = {"name": "z_floor", "kind": "plane", "point": [0, 0, -0.3], "normal": [0, 0, 1]}
+    ramp = {"name": "a_ramp", "kind": "plane", "point": [0.9435, 0, -0.3], "normal": [-1, 0, 1]}
+    plain = FLAT | {"length": 1.0, "stiffness": {"bending_y": 1.0}}
+    corner = scene(rods=[plain], loads=[PUSH | {"force": [0, 0, -0.2]}], obstacles=[floor, ramp])
+    library = exported_contact(corner, tmp_path / "corner", down(2.0)[None], 3, 6, estimate_errors=False)
+    free = library.loaded.start()
+    assert not free.contacts
+    found = library.loaded.solve(down(2.0), free)
+    assert found.converged, found.message
+    wanted = {contact.obstacle: contact.force for contact in solve(library.model, down(2.0)).contacts}
+    assert [contact.obstacle for contact in found.contacts] == ["z_floor", "a_ramp"]
+    for contact in found.contacts:
+        assert_allclose(contact.force, wanted[contact.obstacle], rtol=0, atol=1e-8)
+
+
 def test_no_step_leads_through_a_bar(bar: ContactLibrary) -> None:
     """From above the bar a pull that a rod below it would follow ends on the bar, in one call."""
     free = bar.loaded.solve(down(-8.0))

@@ -160,6 +160,26 @@ def test_crossed_rods_are_those_of_shooting_within_the_told_error() -> None:
     assert max(errors) < found.error_estimate
 
 
+@pytest.mark.slow
+def test_contacts_that_do_not_hold_from_cushions_are_found_as_loads_grow() -> None:
+    """From the shape on cushions no contacts hold at the middle force; from a neighbouring equilibrium they do."""
+    stiff = {"youngs_modulus": 3e9, "poisson_ratio": 0.4, "density": 1200.0}
+    rods = [
+        rod("a", 1e-3, {"tangent": [1, 0, 0]}, length=0.3),
+        rod("b", 1.5e-3, {"position": [0.18, -0.12, -0.01], "tangent": [0, 1, 0]}, length=0.25),
+    ]
+    loads = [{"name": "push", "kind": "tip_wrench", "rod": "a", "force": [0, 0, -0.03]}]
+    tables = {"schema": 1, "loads": loads, "rod_contacts": [{"exact": True}], "accuracy": {"modes": 5, "nodes": 12}}
+    bent = [own | {"material": stiff, "strain": ["bending_x", "bending_y"]} for own in rods]
+    model = build(scene_from_dict(tables | {"rods": bent}))
+    near = solve(model, estimate_error=False)
+    found, wanted = (
+        solve(model, {"push.force": [0, 0, -0.035]}, start=start, estimate_error=False) for start in (None, near)
+    )
+    assert found.converged and wanted.converged
+    assert_allclose(found.contacts[0].on_rods, wanted.contacts[0].on_rods, rtol=0, atol=1e-9)
+
+
 def test_what_one_rod_bears_the_other_presses_with() -> None:
     found = crossed()
     (contact,) = found.contacts

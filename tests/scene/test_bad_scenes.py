@@ -697,6 +697,14 @@ def test_a_remedy_says_what_to_write(text: str, where: str, remedy: str) -> None
     assert remedy in problem.remedy
 
 
+def test_an_obstacle_has_no_name_of_a_rod_that_touches_rods_exactly() -> None:
+    """Contacts with either could not be told apart; without such rods the names may be equal."""
+    named_alike = BAR.replace('"bar"', '"finger"')
+    with pytest.raises(SceneError, match=r"rod_contacts\[0\]: 'finger' is an obstacle too"):
+        parse_scene(scene(named_alike + TOUCHING.format("exact = true")))
+    parse_scene(scene(named_alike))
+
+
 def test_a_missing_key_of_a_table_that_an_override_begins_is_named() -> None:
     with pytest.raises(SceneError) as caught:
         parse_scene(scene(), ["simulation.step=1e-3"])

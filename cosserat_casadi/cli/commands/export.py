@@ -45,7 +45,7 @@ from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.tubes.tube_solution import TubeSolution
 from cosserat_casadi.tubes.tube_solve import solve_tubes
 
-APART = "Modes are chosen for rods that pass through each other: contact of rods without a width acts in motions only."
+APART = "Modes are chosen for rods that pass through each other: with --dynamics rods touch in steps of motions only."
 """A sentence on motions in C of rods that touch each other exactly."""
 
 LOAD_CASES = 32

@@ -77,8 +77,12 @@ class _Met:
     states: dict[object, ContactState] = field(default_factory=dict)
 
     def add(self, state: ContactState) -> None:
-        """Add an arrangement, unless it is known."""
-        self.states.setdefault(self.key(state), state)
+        """Add an arrangement, unless it is known. Contacts at one section are in the order of the scene, as in C."""
+        names = [record.name for record in (*self.scene.obstacles, *self.scene.rods)]
+        ordered = ContactState(
+            tuple(sorted(state.touches, key=lambda t: (t.of_body, t.owner, t.start, names.index(t.obstacle))))
+        )
+        self.states.setdefault(self.key(ordered), ordered)
 
     def add_path(self, path: ContactPath) -> None:
         """Add the arrangements of a path between its load cases, each where it was met last."""
@@ -168,8 +172,8 @@ def chosen_arrangements(
     names = [*layout.names, *parameters.names]
     own = solve_contact(scene, grids, layout.unpack(given))
     _check(own, "the scene's own inputs")
-    first = state_in(own.model.scene)
-    met.add(first)
+    met.add(state_in(own.model.scene))
+    first = next(iter(met.states))
     own_values = before = np.append(given, theta)
     for number, row in enumerate([] if load_cases is None else load_cases, start=1):
         # Of a row without parameters they are the scene's own.
@@ -187,7 +191,7 @@ def chosen_arrangements(
         before = values
     met.add(ContactState(()))
     met.check()
-    start = list(met.states).index(met.key(first))
+    start = list(met.states).index(first)
     answers, finer = (
         [ContactEquations(named, given, own_grids, state, theta) for state in met.states.values()]
         for own_grids in (grids, richer(grids, scene))

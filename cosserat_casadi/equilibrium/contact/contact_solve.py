@@ -132,11 +132,11 @@ def solve_contact(
         admits=lambda shape: not passes_through(cushioned, shape, deepest=inf),
         unmet_before=unmet_before,
     )
-    # From thicker cushions Newton's method may take a rod to the other side of a thin bar.
-    may_grow = has_thin_obstacles(bare) or (bare.rods_touch_exactly and not cushioned.converged)
-    grown = _loads_grown_in_contact(settling, cushioned) if may_grow and not holds else None
-    if grown is not None:
-        found, holds = grown, True
+    # From cushions crossed rods may slide off each other, and Newton's method take a rod to the other side of a thin bar.
+    if not holds and (bare.rods_touch_exactly or has_thin_obstacles(bare)):
+        grown = _loads_grown_in_contact(settling, cushioned)
+        if grown is not None:
+            found, holds = grown, True
     if not cushioned.converged and not holds:
         return replace(cushioned, iterations=settling.iterations)
     if found is None:

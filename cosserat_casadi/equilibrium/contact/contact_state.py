@@ -307,8 +307,8 @@ class ContactState:
         for touch in self.touches:
             last = first + len(touch.moving)
             touches.append(touch.moved(places[first:last]))
-            if touch.rods:
-                moved.setdefault(touch.owner, {}).update(zip(touch.moving, places[first:last], strict=True))
+            for (rod, before), after in zip(touch.sought, places[first:last], strict=True):
+                moved.setdefault(rod, {})[before] = after
             first = last
         if not any(touch.seams for touch in touches):
             return ContactState(tuple(touches))
