@@ -132,7 +132,7 @@ def solve_contact(
         admits=lambda shape: not passes_through(cushioned, shape, deepest=inf),
         unmet_before=unmet_before,
     )
-    # From cushions crossed rods may slide off each other, and Newton's method take a rod to the other side of a thin bar.
+    # From cushions crossed rods may slide off each other, and Newton's method may lead to the other side of a thin bar.
     if not holds and (bare.rods_touch_exactly or has_thin_obstacles(bare)):
         grown = _loads_grown_in_contact(settling, cushioned)
         if grown is not None:
