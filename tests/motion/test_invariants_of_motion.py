@@ -41,7 +41,8 @@ def simulated(scene: dict[str, Any], **simulation: Any) -> Motion:
 
 def step_ends(history: History) -> list[MotionState]:
     """The motion at its start and at the ends of all steps."""
-    return [history.at(0.0), *(history.at(step.end.time) for _, step in history.steps)]
+    states = history.states(np.array([0.0, *(step.end.time for _, step in history.steps)]))
+    return [MotionState(*parts) for parts in zip(states.x, states.v, states.a, states.inputs, strict=True)]
 
 
 def energies(model: Model, states: list[MotionState]) -> FloatArray:
