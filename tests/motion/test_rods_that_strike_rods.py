@@ -385,9 +385,8 @@ def test_what_exact_contact_of_rods_refuses() -> None:
     with pytest.raises(SceneError, match="'upper' is free: at rest only contact could hold it"):
         solve(scene_from_dict(tables))
     model = moving(tables)
-    with pytest.raises(ExportError, match="an equilibrium in C has no") as refused:
+    with pytest.raises(ExportError, match="'upper' is free: at rest only contact could hold it"):
         export(model, "nowhere")
-    assert len([problem for problem in refused.value.problems if problem.where == "rod_contacts[0].exact"]) == 1
     chained = free_rods()
     chained["rods"].append(rod("lower", {"rod": "lower", "at": 1.0}) | {"name": "behind"})
     with pytest.raises(SceneError, match="only if their ends meet no end of another rod"):
