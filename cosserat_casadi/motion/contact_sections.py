@@ -23,11 +23,9 @@ from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.materials import BENDING
 from cosserat_casadi.motion.contact_gap import Facing
 from cosserat_casadi.motion.contact_law import LOOKS
-
-BENDING = (0, 1)
-"""Indices of the strains that bend a rod."""
 
 SECTIONS_FOR_MODE = 3
 """Sections that hold a lying rod, for each bending mode of an element.

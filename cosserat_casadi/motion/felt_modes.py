@@ -16,6 +16,7 @@ from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import kept_with
+from cosserat_casadi.model.materials import BENDING
 from cosserat_casadi.model.watched import watched_sections
 from cosserat_casadi.motion.displacement import LEVER, displacements
 from cosserat_casadi.motion.history import History
@@ -59,9 +60,6 @@ TWIST = 2
 
 STRETCH = 5
 """Index of the extension among the strains."""
-
-BENDING = (0, 1)
-"""Indices of the curvatures. Positions are their second integrals, so that their fronts make no kinks."""
 
 ROUNDING = 1e-12
 """Lever arm, over the length, that counts as rounding."""
@@ -259,6 +257,7 @@ def _fronts_over_seen(model: Model, name: str) -> dict[int, float]:
     """:func:`front_over_seen` by strain, for strains whose fronts make kinks; kept with the model."""
     fronts: dict[str, dict[int, float]] = kept_with(model, "_fronts_over_seen", dict)
     if name not in fronts:
+        # Positions are second integrals of the curvatures, so that their fronts make no kinks.
         strains = [strain for strain in model.discrete.rods[name].admitted if strain not in BENDING]
         fronts[name] = {strain: front_over_seen(model, name, strain) for strain in strains}
     return fronts[name]
