@@ -183,7 +183,9 @@ class SurfaceSliding:
                 parts.append(_routine(side, span, len(self._sides)).call(arguments))
         of_pose, of_sums = [part[:3] for part in parts], [part[3:] for part in parts]
         by_x, by_inputs, shifted = (ca.vertcat(*blocks) for blocks in zip(*of_pose, strict=True))
-        sums = [sum(blocks[1:], blocks[0]) for blocks in zip(*of_sums, strict=True)]
+        rates_by_x, force_by_x, rates_shifted, force_shifted, rates_by_inputs, force_by_inputs = (
+            sum(blocks[1:], blocks[0]) for blocks in zip(*of_sums, strict=True)
+        )
 
         def chained(of_poses: Matrix, of_rates: Matrix, of_generalised: Matrix, shift: Matrix | None = None) -> Matrix:
             """Derivatives, (4 + n)×k, from those of poses, of τᵀq̇, of the generalised force, and of abscissae."""
@@ -194,9 +196,9 @@ class SurfaceSliding:
             return stacked
 
         results = [
-            chained(by_x, sums[0], sums[1]),
-            chained(shifted, sums[2], sums[3], change[count:, :]),
-            chained(by_inputs, sums[4], sums[5]),
+            chained(by_x, rates_by_x, force_by_x),
+            chained(shifted, rates_shifted, force_shifted, change[count:, :]),
+            chained(by_inputs, rates_by_inputs, force_by_inputs),
             along.T @ by_inputs,
         ]
         results = ca.graph_substitute(results, [held, along], [forces, tangents])
@@ -282,20 +284,23 @@ def _section_derivatives(
     forces: Matrix,
     tangents: Matrix,
 ) -> list[Matrix]:
-    """Nine derivatives of the pose of a section, 12×1, and of its rates.
+    """Derivatives of the pose q of a section and of its rates.
 
-    The first three are those of the pose q by x, by inputs, and with the changes of the section, 12 rows each. Then
-    follow in turn the derivatives of τᵀq̇ and of (∂q/∂x)ᵀ w, with the tangents τ, 12×2, and the forces w on the pose
-    held, by x, with the changes, and by inputs.
+    The forces w on the pose, 12×1, and the tangents τ, 12×2, are held; each column of the changes moves the section.
+
+    Returns:
+        the derivatives of q by x, by inputs and with the changes, 12 rows each; of τᵀq̇ and of (∂q/∂x)ᵀ w by x; of both
+        with the changes; of both by inputs.
     """
     generalised = ca.jtimes(pose, x, forces, True)
-    shifted, shifted_rates, shifted_force = (ca.jtimes(part, section, change) for part in (pose, rates, generalised))
-    return [
-        *(ca.jacobian(pose, x), ca.jacobian(pose, inputs), shifted),
-        *(ca.jtimes(rates, x, tangents, True).T, ca.jacobian(generalised, x)),
-        *(tangents.T @ shifted_rates, shifted_force),
-        *(ca.jtimes(rates, inputs, tangents, True).T, ca.jacobian(generalised, inputs)),
-    ]
+    pose_shifted, rates_shifted, force_shifted = (
+        ca.jtimes(part, section, change) for part in (pose, rates, generalised)
+    )
+    of_pose = [ca.jacobian(pose, x), ca.jacobian(pose, inputs), pose_shifted]
+    by_x = [ca.jtimes(rates, x, tangents, True).T, ca.jacobian(generalised, x)]
+    with_changes = [tangents.T @ rates_shifted, force_shifted]
+    by_inputs = [ca.jtimes(rates, inputs, tangents, True).T, ca.jacobian(generalised, inputs)]
+    return [*of_pose, *by_x, *with_changes, *by_inputs]
 
 
 def _pose(facing: Facing, system: System, weights: Matrix) -> Matrix:
