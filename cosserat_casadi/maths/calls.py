@@ -61,7 +61,7 @@ def with_dense_results(function: ca.Function, name: str) -> ca.Function:
 
 
 def with_jacobian_in_a_loop(function: ca.Function) -> ca.Function:
-    """A function whose Jacobian is a loop: a turn makes one column, the derivative in one direction.
+    """A function whose Jacobian is a loop over its columns, each the derivative in one direction.
 
     CasADi's own Jacobian of a function of matrices has the instructions of all columns, one after the other. It takes
     the derivatives in one direction from the function itself, and in many from this Jacobian.
@@ -77,12 +77,13 @@ def with_jacobian_in_a_loop(function: ca.Function) -> ca.Function:
     read = [sorted(set(function.jac_sparsity(0, i).get_col())) for i in range(len(symbols))]
     count = sum(map(len, read))
     directions = []
-    for number, symbol in enumerate(symbols):
-        places = range(sum(map(len, read[:number])), count)
+    first = 0
+    for symbol, entries in zip(symbols, read, strict=True):
         direction = ca.DM(symbol.numel(), count)
-        for row, place in zip(read[number], places, strict=False):
-            direction[row, place] = 1.0
+        for place, entry in enumerate(entries, start=first):
+            direction[entry, place] = 1.0
         directions.append(direction)
+        first += len(entries)
     repeated = [ca.repmat(symbol, 1, count) for symbol in symbols]
     columns = along.map(count)(*repeated, *map(ca.densify, directions))
     output = ca.MX.sym("out", ca.Sparsity(*result.shape))
