@@ -78,9 +78,9 @@ class _Met:
 
     def add(self, state: ContactState) -> None:
         """Add an arrangement, unless it is known. Contacts at one section are in the order of the scene, as in C."""
-        names = [record.name for record in (*self.scene.obstacles, *self.scene.rods)]
+        number = [record.name for record in (*self.scene.obstacles, *self.scene.rods)].index
         ordered = ContactState(
-            tuple(sorted(state.touches, key=lambda t: (t.of_body, t.owner, t.start, names.index(t.obstacle))))
+            tuple(sorted(state.touches, key=lambda one: (one.of_body, one.owner, one.start, number(one.obstacle))))
         )
         self.states.setdefault(self.key(ordered), ordered)
 

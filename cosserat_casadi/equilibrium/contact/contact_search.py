@@ -46,6 +46,7 @@ from cosserat_casadi.equilibrium.contact.rod_gaps import RodsApart
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.chebyshev import legendre_polynomials
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.materials import BENDING
 from cosserat_casadi.numerics.newton import NewtonSettings, newton, relative_norm
 from cosserat_casadi.numerics.outcome import Outcome
 
@@ -350,18 +351,21 @@ class Settling:
 
     def _alike(self, first: ContactState, second: ContactState) -> bool:
         """Whether two states are the same attempt; beside a section with a load small differences matter."""
-        if first.signature != second.signature or any(
-            set(one.seams).symmetric_difference(other.seams) & set(self.sections[one.owner])
-            for one, other in zip(first.touches, second.touches, strict=True)
-            if one.is_line
-        ):
+        if first.signature != second.signature:
             return False
+        lines = [pair for pair in zip(first.touches, second.touches, strict=True) if pair[0].is_line]
+        same_seams = all(self._seams_at_loads(one) == self._seams_at_loads(other) for one, other in lines)
         beside = [
             min((abs(place - section) for section in self.sections[rod]), default=inf)
             for touch in second.touches
             for rod, place in touch.sought
         ]
-        return bool(np.all(np.abs(first.places - second.places) < np.minimum(ALIKE, np.array(beside) / 2)))
+        near = np.abs(first.places - second.places) < np.minimum(ALIKE, np.array(beside) / 2)
+        return bool(same_seams and np.all(near))
+
+    def _seams_at_loads(self, touch: Touch) -> set[float]:
+        """Seams of a line of contact at sections with loads; other seams move with the contacts there."""
+        return set(touch.seams) & set(self.sections[touch.owner])
 
     def solve(self, state: ContactState, near: Solution) -> ContactEquilibrium | None:
         """Solve the equations of one state from a nearby shape; None if Newton's method does not converge."""
@@ -497,7 +501,7 @@ def _press_apart(solution: Solution, one: Touch, other: Touch) -> bool:
         return False
     scene = solution.model.scene
     (rod,) = [rod for rod in scene.rods if rod.name == one.owner]
-    if not {0, 1} <= set(rod.admitted):
+    if not set(BENDING) <= set(rod.admitted):
         return False
     X = np.array([max(one.start, other.start)])
     first, second = (normals(solution, rod.name, obstacle_of(scene, touch.obstacle), X)[0] for touch in (one, other))
@@ -512,6 +516,7 @@ def _by_touch(found: ContactEquilibrium, tolerance: float, error: float) -> list
     """Stretches inside an obstacle, each with its adjacent contact; stretches on both sides of one are joined."""
     alone: list[tuple[Penetrated, Touch | None]] = []
     joined: dict[Touch, Penetrated] = {}
+    # A short line is shallow, however large the error of its places is.
     for penetrated in found.penetrations(min(tolerance, SHALLOW) if error < inf else tolerance):
         if penetrated.depth <= tolerance and penetrated.error(found.state.touches) <= error:
             continue

@@ -310,9 +310,8 @@ class ContactState:
             for (rod, before), after in zip(touch.sought, places[first:last], strict=True):
                 moved.setdefault(rod, {})[before] = after
             first = last
-        if not any(touch.seams for touch in touches):
-            return ContactState(tuple(touches))
-        return ContactState(tuple(touches)).reseamed(moved)
+        state = ContactState(tuple(touches))
+        return state.reseamed(moved) if any(touch.seams for touch in touches) else state
 
     def with_forces(self, forces: Columns, modes: Mapping[str, int]) -> Iterator[tuple[Touch, Columns, Columns]]:
         """Each contact, the forces at its sections, and the coefficients of the force along it.
