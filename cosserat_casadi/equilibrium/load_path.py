@@ -63,8 +63,7 @@ def load_path(model: Model, inputs: FloatArray, p: FloatArray | None = None) -> 
     if tangent is not None:
         tangent = without_rounding(tangent, NOISE)
     # The load factor is t itself.
-    functions = (model.path_residual, model.path_jacobian)
-    path = _path(model, functions, lambda load_factor: (*given, load_factor), rate, unloaded)
+    path = _path(model, model.path_residual, model.path_jacobian, lambda t: (*given, t), rate, unloaded)
     return replace(path, tangent=tangent, first_step=first_step(model))
 
 
@@ -143,18 +142,19 @@ def input_path(
         return dg_dt
 
     functions = (model.path_residual, model.path_jacobian)
-    return _path(model, functions, lambda t: (*arguments_at(t), load_factor), rate, start)
+    return _path(model, *functions, lambda t: (*arguments_at(t), load_factor), rate, start)
 
 
 def _path(
     model: SystemFunctions,
-    functions: tuple[ca.Function, ca.Function],
+    path_residual: ca.Function,
+    path_jacobian: ca.Function,
     arguments_at: Callable[[float], tuple[FloatArray | float, ...]],
     rate: Callable[[FloatArray, float], FloatArray],
     start: FloatArray,
 ) -> Path:
-    """The path on which the arguments of a model's functions, ``path_residual`` and ``path_jacobian``, follow t."""
-    path_residual, path_jacobian = functions
+    """The path on which the arguments of residual and Jacobian, functions of a model, follow t."""
+    # Callers read both functions from the model: the stack of calls that build them stays one shorter.
 
     def residual(x: FloatArray, t: float) -> FloatArray:
         return column(path_residual(x, *arguments_at(t)))
