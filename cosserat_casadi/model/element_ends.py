@@ -87,10 +87,9 @@ def _cut_coils(record: scenes.Rod, ends: tuple[float, ...]) -> tuple[float, ...]
     if not times <= MOST_TURNS:
         problem = f"turns the rod about {times:.3g} times; at most {MOST_TURNS} turns are resolved"
         raise SceneError(Problem(f"rods.{record.name}.intrinsic", problem, "curvature is in 1/m; or join shorter rods"))
-    halves = [
-        (start + end) / 2 for (start, end), turn in zip(pairwise(ends), turns, strict=True) if turn > LONGEST_TURN
-    ]
-    return _cut_coils(record, tuple(sorted([*ends, *halves])))
+    elements = zip(pairwise(ends), turns, strict=True)
+    middles = [(start + end) / 2 for (start, end), turn in elements if turn > LONGEST_TURN]
+    return _cut_coils(record, tuple(sorted([*ends, *middles])))
 
 
 @lru_cache(maxsize=64)

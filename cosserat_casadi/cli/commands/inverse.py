@@ -56,9 +56,9 @@ def inverse(
     """Find inputs that bring rods and bodies to the targets of a scene.
 
     Where the scene has [[bounds]], only the inputs that it bounds change; without bounds and inputs, all loads and
-    actuators but gravity. Exit codes: 0 targets met, 2 refused, 3 not
-    met, unstable, or no equilibrium found; the files show the closest pose then. With --table every row is a separate
-    target, and 3 says that at least one target is not met.
+    actuators but gravity. Exit codes: 0 targets met, 2 refused, 3 not met, unstable, or no equilibrium found; the files
+    show the closest pose then. With --table every row is a separate target, and 3 says that at least one target is not
+    met.
     """
     if stable and unstable:
         raise SceneError(Problem("--unstable", "stands beside --stable", "leave one of them out"))
