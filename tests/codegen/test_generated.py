@@ -188,16 +188,24 @@ CasADi computes equal expressions once. Constants that are equal but for their r
 rows, are equal on one machine and not on the next, so that a few instructions in a thousand come or go.
 """
 
-COUNTS_AGREE = 0.02
-"""Share that counts may differ by: three times the most that was met, 0.65 %, with OpenBLAS for other processors."""
+COUNTS_AGREE = 0.04
+"""Share that counts may differ by: twice the most that was met, 16 of 743 instructions on a processor of AMD."""
+
+REALS = re.compile(r"(?<=\(real\))-?\d+\.\d+(?:e[-+]?\d+)?")
+"""Constants of tables in C, such as the turns of the tip by each mode."""
+
+REALS_AGREE = 1e-12
+"""Share that these constants may differ by, some thousand times their rounding."""
 
 
-def is_same_but_for_counts(one: str, other: str) -> bool:
-    """Whether texts differ in nothing but numbers of instructions, and in those by little."""
-    if COUNTS.sub("#", one) != COUNTS.sub("#", other):
+def is_same_but_for_rounding(one: str, other: str) -> bool:
+    """Whether texts differ in nothing but constants and numbers of instructions, and in those by little."""
+    if COUNTS.sub("#", REALS.sub("#", one)) != COUNTS.sub("#", REALS.sub("#", other)):
         return False
-    ours, theirs = (np.array(COUNTS.findall(text), dtype=float) for text in (one, other))
-    return np.allclose(ours, theirs, rtol=COUNTS_AGREE, atol=0)
+    return all(
+        np.allclose(*(np.array(numbers.findall(text), dtype=float) for text in (one, other)), rtol=share, atol=0)
+        for numbers, share in ((COUNTS, COUNTS_AGREE), (REALS, REALS_AGREE))
+    )
 
 
 def differing(committed: dict[str, str], fresh: dict[str, str], exact: bool, hashes: Collection[str] = ()) -> list[str]:
@@ -215,7 +223,7 @@ def differing(committed: dict[str, str], fresh: dict[str, str], exact: bool, has
         if not exact and (is_kernel(name) or name in hashes):
             continue
         one, other = committed[name], fresh[name]
-        if one != other and (exact or not is_same_but_for_counts(one, other)):
+        if one != other and (exact or not is_same_but_for_rounding(one, other)):
             lines.append(f"{name} differs from what this version writes")
     return lines
 
@@ -335,12 +343,20 @@ def test_missing_stale_and_changed_files_are_named() -> None:
     ],
 )
 def test_counts_that_hang_on_rounding_may_differ_by_little(one: str, other: str) -> None:
-    assert is_same_but_for_counts(one, other)
+    assert is_same_but_for_rounding(one, other)
     ours, theirs = (COUNTS.findall(text) for text in (one, other))
     assert len(ours) == len(theirs) == 1
     twice = str(2 * float(ours[0])) if "." in ours[0] else str(2 * int(ours[0]))
-    assert not is_same_but_for_counts(one.replace(ours[0], twice), other)
-    assert not is_same_but_for_counts(one + " ", other)
+    assert not is_same_but_for_rounding(one.replace(ours[0], twice), other)
+    assert not is_same_but_for_rounding(one + " ", other)
+
+
+def test_constants_may_differ_by_their_rounding() -> None:
+    table = "table[] = {(real)0.8671099695241197, (real)-3.5e-06};"
+    assert is_same_but_for_rounding(table, table.replace("241197", "2412"))
+    assert not is_same_but_for_rounding(table, table.replace("241197", "3"))
+    assert not is_same_but_for_rounding(table, table.replace("-3.5", "-3.6"))
+    assert not is_same_but_for_rounding(table, table.replace("(real)-3.5e-06", "(real)-3.5e-06, (real)1.0"))
 
 
 @pytest.mark.parametrize("text", ["_SZ_IW 4", "_SZ_ARG 3", '"first": 12', "double tension[10];", "CasADi 3.8.2"])
