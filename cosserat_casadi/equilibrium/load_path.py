@@ -105,6 +105,7 @@ def paced_by_shape(path: Path, model: Model) -> Path:
         tangent=None if path.tangent is None else PACE * path.tangent,
         step_weights=model.step_weights * shape,
         first_step=path.first_step / PACE,
+        exact_tangents=True,
         admits=admits,
     )
 
