@@ -19,9 +19,13 @@ from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.model.unloaded_response import NOISE
 from cosserat_casadi.numerics.broyden import Jacobian, solved
 from cosserat_casadi.numerics.continuation import ContinuationSettings, Path, PathPoint
+from cosserat_casadi.scene.rod_records import STRAINS
 
 FIRST_STEP = 0.25
 """Longest first step of an assembly with floating frames: the compliance falls to (3/4)³ in it."""
+
+NEARLY_LOADED = 0.99
+"""Load factor beyond which a stalled path may be one that pulls a rod taut."""
 
 PACE = 3
 """Power p of t = 1 − (1 − s)^p on a path whose steps the shape alone bounds."""
@@ -77,6 +81,12 @@ def backwards(path: Path, end: FloatArray) -> Path:
         start=end,
         tangent=None,
     )
+
+
+def may_stretch(model: Model) -> bool:
+    """Whether all rods extend, and constraints or cables of given length may stretch them."""
+    extend = all(STRAINS.index("extension") in rod.admitted for rod in model.scene.rods)
+    return extend and not all(model.discrete.unknowns.differential)
 
 
 def paced_by_shape(path: Path, model: Model) -> Path:

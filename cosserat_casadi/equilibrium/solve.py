@@ -20,11 +20,13 @@ from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.judge import correct, judge
 from cosserat_casadi.equilibrium.load_path import (
+    NEARLY_LOADED,
     backwards,
     column,
     continuation_limits,
     input_path,
     load_path,
+    may_stretch,
     paced_by_shape,
 )
 from cosserat_casadi.equilibrium.locking import with_locking_note
@@ -51,7 +53,6 @@ from cosserat_casadi.numerics.continuation import ContinuationResult, Continuati
 from cosserat_casadi.numerics.newton import NewtonResult, relative_norm
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress
-from cosserat_casadi.scene.rod_records import STRAINS
 
 CANNOT_RELAX = " The search for less energy takes no assemblies, free rods and cables of given length."
 """Sentence in the message of a solution that cannot be relaxed."""
@@ -70,9 +71,6 @@ TAUT_PATH = " Tension grew large on the load path: the shape alone bounded its s
 
 NOTHING = 1e-14
 """Relative norm of a residual that is rounding alone, as that of the unloaded scene without loads is."""
-
-NEARLY_LOADED = 0.99
-"""Load factor beyond which a stalled path may be one that pulls a rod taut."""
 
 Start = Solution | FloatArray | None
 """Start of a solve: a solution, unknowns, or None for the unloaded rod."""
@@ -409,7 +407,7 @@ def _paced(task: _Task, path: Path) -> ContinuationResult | None:
     model = task.model
     if all(model.discrete.unknowns.differential):
         return None
-    extend = all(STRAINS.index("extension") in rod.admitted for rod in model.scene.rods)
+    extend = may_stretch(model)
     if not extend and (not model.discrete.constraints or model.scene.bodies or held_taut(model, task.inputs)):
         return None
     result = follow(paced_by_shape(path, model), task.limits, task.progress)

@@ -53,7 +53,7 @@ def held_taut(model: Model, inputs: FloatArray) -> bool:
 
 
 def is_closed(model: Model, inputs: FloatArray, x: FloatArray) -> bool:
-    """Whether rods and bodies meet their supports and joints, however large the forces are, shape of x (model.size,)."""
+    """Whether rods and bodies meet their supports and joints, however large the forces are."""
     held = np.r_[tuple(entries for _, entries in model.discrete.unknowns.of_kind(BlockKind.MULTIPLIER))]
     gaps = np.abs(column(model.path_residual(x, inputs, 1.0))[held])
     return bool(gaps.max(initial=0.0) <= CLOSED)

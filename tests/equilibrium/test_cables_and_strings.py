@@ -1,4 +1,4 @@
-"""Slack cables in wind and taut strings, whose tension is many times EI/L², against collocation of the rod's equations."""
+"""Slack cables in wind and taut strings, whose tension is many times EI/L², against collocation by SciPy."""
 
 from __future__ import annotations
 
