@@ -92,8 +92,8 @@ def may_stretch(model: Model) -> bool:
 def paced_by_shape(path: Path, model: Model) -> Path:
     """A path with steps that the change of shape alone bounds, ever shorter in t towards its end: t = 1 − (1 − s)³.
 
-    The tension of a rod that a support stretches grows as 1/(1 − t), to many times EI/ℓ² in a taut wire. Steps that
-    this tension bounds too do not reach t = 1.
+    The tension of a rod that a support stretches grows as 1/(1 − t), to many times EI/ℓ² in a taut wire or a cable with
+    little sag. Steps that this tension bounds too do not reach t = 1.
     """
     shape = model.discrete.unknowns.differential
 
