@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.judge import correct, judge
+from cosserat_casadi.equilibrium.load_path import NEARLY_LOADED
 from cosserat_casadi.equilibrium.metrics import prolong
 from cosserat_casadi.equilibrium.relax import can_relax
 from cosserat_casadi.equilibrium.solution import Solution
@@ -130,8 +131,17 @@ class SceneSolver:
         self.relaxed = False
         if solution.outcome is Outcome.LOAD_STALLED:
             self.taut = held_taut(model, solution.inputs)
-            return solution if self.taut else self.relax(solution)
+            return solution if self.taut else self.relax(self._paced(solution))
         return solution
+
+    def _paced(self, stalled: Solution) -> Solution:
+        """The end of a path on which the shape alone bounds the steps, if loads without a potential leave no other."""
+        model, inputs = stalled.model, stalled.inputs
+        if stalled.load_factor <= NEARLY_LOADED or self.is_assembly or model.has_potential(inputs):
+            return stalled
+        paced = self._counted(solve(model, self.values, method="taut", progress=self.progress, estimate_error=False))
+        self.large_tension = paced.converged
+        return paced if paced.converged else stalled
 
     def _counted(self, solution: Solution) -> Solution:
         """Count the iterations of a solution, log it, and return it."""

@@ -381,7 +381,8 @@ def _continuation(task: _Task) -> _End:
     result = follow(path, task.limits, task.progress)
     stalled = result.outcome is Outcome.LOAD_STALLED
     paced = None
-    if stalled and not isinstance(task.start, Solution) and result.reached > NEARLY_LOADED:
+    nearly = stalled and not isinstance(task.start, Solution) and result.reached > NEARLY_LOADED
+    if nearly and may_stretch(task.model):
         paced = _paced(task, path)
     if paced is not None:
         ended = paced if paced.outcome is Outcome.CONVERGED else result

@@ -13,7 +13,7 @@ from cosserat_casadi import Model, Outcome, Scene, build, discretise, scene_from
 from cosserat_casadi.equilibrium.solve import TAUT_PATH
 from cosserat_casadi.numerics.broyden import newton_step
 from tests.reference.held_cables import HeldCable
-from tests.scenes import WEIGHT, rod, scene
+from tests.scenes import rod, scene
 
 CABLE = HeldCable(length=10.4, distance=10.0, bending=2.0, torsion=1.5, axial=1e6, weight=7.848, wind=(0.0, 8.0, 0.0))
 STRING = HeldCable(length=0.65, distance=0.652, bending=8e-5, torsion=6e-5, axial=1.4e4, weight=3.0)
@@ -95,16 +95,18 @@ def test_a_cable_that_cannot_extend_and_is_held_straight_has_no_equilibrium(meth
     assert TAUT_PATH not in solution.message
 
 
-@pytest.mark.parametrize("method", ["taut", "continuation"])
-def test_rods_in_a_row_that_are_too_short_and_cannot_extend_have_no_equilibrium(method: str) -> None:
+def test_rods_in_a_row_that_are_too_short_and_cannot_extend_have_no_equilibrium() -> None:
     """Relative to a tension without bound their gap is as small as any residual."""
+    even = dict.fromkeys(("bending_x", "bending_y", "torsion"), 1.0)
     base = {"position": [0, 0, 0], "tangent": [1, 0, 0]}
-    first = rod("kirchhoff", name="first", length=0.5, base=base)
     carried = {"rod": "first", "at": 1.0, "position": [0, 0, 0], "quaternion": [1, 0, 0, 0]}
-    second = rod("kirchhoff", name="second", length=0.4999, base=carried)
-    pin = {"rod": "second", "kind": "pinned", "position": [1, 0, 0]}
-    row = scene(WEIGHT, rods=[first, second], supports=[pin])
-    solution = solve(on_modes(row, 3), method=method)
+    rods = [
+        rod(name="first", length=0.5, base=base, stiffness=even, linear_density=0.5),
+        rod(name="second", length=0.4999, base=carried, stiffness=even, linear_density=0.5),
+    ]
+    weight = {"name": "weight", "kind": "gravity", "acceleration": [0, 0, -9.81]}
+    row = scene(weight, rods=rods, supports=[{"rod": "second", "kind": "pinned", "position": [1, 0, 0]}])
+    solution = solve(build(row, discretise(row, 4, 10)), method="taut")
     assert solution.outcome is Outcome.LOAD_STALLED
     assert "not closed" in solution.message
 
