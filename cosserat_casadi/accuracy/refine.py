@@ -167,8 +167,9 @@ def solve(subject: Any, values: Any = None, **options: Any) -> Any:
             the wanted ones, and so stays on its branch. Other parameters are set at once or, if that fails, followed
             together with the inputs. In a scene with obstacles the contacts of the solution are tried first. From
             unknowns of shape (size,), Newton is tried at the wanted inputs, then the unloaded rod.
-        method: for rods, "continuation" (default), "rootfinder" (CasADi's Newton) or "nlpsol" (ipopt); the last two
-            start at the full load and may find another branch, or none.
+        method: for rods, "continuation" (default), "taut" (continuation for large tension: the shape alone bounds the
+            steps), "rootfinder" (CasADi's Newton) or "nlpsol" (ipopt); the last two start at the full load and may find
+            another branch, or none.
         settings: limits of the continuation, for rods.
         raise_on_failure: whether to raise instead of returning an answer that did not converge, for rods.
         estimate_error: whether the error by modes and nodes, or steps, is estimated; for rods it costs about a

@@ -14,10 +14,11 @@ import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.judge import correct, judge
+from cosserat_casadi.equilibrium.load_path import NEARLY_LOADED
 from cosserat_casadi.equilibrium.metrics import prolong
 from cosserat_casadi.equilibrium.relax import can_relax
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.equilibrium.solve import solve, stabilised
+from cosserat_casadi.equilibrium.solve import TAUT_PATH, solve, stabilised
 from cosserat_casadi.equilibrium.taut_rods import held_taut
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
@@ -50,6 +51,7 @@ class SceneSolver:
         relaxed: whether the current equilibrium, or the one it was corrected from, was reached by descent in energy.
         vain_descents: number of discretisations on which descent has failed.
         taut: whether the last solve ended early because of taut inextensible rods, for which more modes do not help.
+        large_tension: whether tension grew so large on the last load path that the shape alone bounded its steps.
         iterations: Newton steps so far, on all discretisations.
     """
 
@@ -61,6 +63,7 @@ class SceneSolver:
     relaxed: bool = False
     vain_descents: int = 0
     taut: bool = False
+    large_tension: bool = False
     iterations: int = 0
 
     @property
@@ -121,12 +124,24 @@ class SceneSolver:
             corrected = corrected_from(model, prolong(coarser, model), coarser.inputs)
             if corrected is not None:
                 return self._counted(corrected)
-        solution = self._counted(solve(model, self.values, progress=self.progress, estimate_error=False))
+        method = "taut" if self.large_tension else "continuation"
+        solution = solve(model, self.values, method=method, progress=self.progress, estimate_error=False)
+        self._counted(solution)
+        self.large_tension = TAUT_PATH in solution.message
         self.relaxed = False
         if solution.outcome is Outcome.LOAD_STALLED:
             self.taut = held_taut(model, solution.inputs)
-            return solution if self.taut else self.relax(solution)
+            return solution if self.taut else self.relax(self._paced(solution))
         return solution
+
+    def _paced(self, stalled: Solution) -> Solution:
+        """The end of a path on which the shape alone bounds the steps, if loads without a potential leave no other."""
+        model, inputs = stalled.model, stalled.inputs
+        if stalled.load_factor <= NEARLY_LOADED or self.is_assembly or model.has_potential(inputs):
+            return stalled
+        paced = self._counted(solve(model, self.values, method="taut", progress=self.progress, estimate_error=False))
+        self.large_tension = paced.converged
+        return paced if paced.converged else stalled
 
     def _counted(self, solution: Solution) -> Solution:
         """Count the iterations of a solution, log it, and return it."""

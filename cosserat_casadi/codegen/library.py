@@ -34,7 +34,7 @@ from cosserat_casadi.codegen.turn_budget import ALWAYS, SETTLING_ITERATIONS, Tur
 from cosserat_casadi.compiling.c_tables import numbers
 from cosserat_casadi.compiling.texts import render, resource
 from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
-from cosserat_casadi.equilibrium.load_path import continuation_limits, first_step
+from cosserat_casadi.equilibrium.load_path import NEARLY_LOADED, PACE, continuation_limits, first_step, may_stretch
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.input_bounds import ranges_of_inputs
@@ -345,6 +345,7 @@ def _words(model: Model, names: Names, contents: FolderContents) -> dict[str, An
         **solver_constants(continuation_limits(model), near=MAX_DISTANCE),
         "step_weights": numbers(weights.tolist()),
         "is_shape": numbers(model.discrete.unknowns.differential.astype(int).tolist()),
+        "paces": int(may_stretch(model)),
         "first": first_step(model),
         "margins": len(margins),
         "paths": sum(margin.kind == "path" for margin in margins),
@@ -395,6 +396,8 @@ def solver_constants(limits: ContinuationSettings, near: float) -> dict[str, Any
         "tolerance": limits.newton.tolerance,
         "iterations": limits.newton.iterations,
         "shortest": limits.shortest,
+        "pace": PACE,
+        "nearly_loaded": NEARLY_LOADED,
         "longest": limits.longest,
         "inexact": limits.inexact,
         "most_bent": MOST_BENT,

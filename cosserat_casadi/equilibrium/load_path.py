@@ -19,9 +19,13 @@ from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.model.unloaded_response import NOISE
 from cosserat_casadi.numerics.broyden import Jacobian, solved
 from cosserat_casadi.numerics.continuation import ContinuationSettings, Path, PathPoint
+from cosserat_casadi.scene.rod_records import STRAINS
 
 FIRST_STEP = 0.25
 """Longest first step of an assembly with floating frames: the compliance falls to (3/4)³ in it."""
+
+NEARLY_LOADED = 0.99
+"""Load factor beyond which a stalled path may be one that pulls a rod taut."""
 
 PACE = 3
 """Power p of t = 1 − (1 − s)^p on a path whose steps the shape alone bounds."""
@@ -79,11 +83,17 @@ def backwards(path: Path, end: FloatArray) -> Path:
     )
 
 
+def may_stretch(model: Model) -> bool:
+    """Whether all rods extend, and constraints or cables of given length may stretch them."""
+    extend = all(STRAINS.index("extension") in rod.admitted for rod in model.scene.rods)
+    return extend and not all(model.discrete.unknowns.differential)
+
+
 def paced_by_shape(path: Path, model: Model) -> Path:
     """A path with steps that the change of shape alone bounds, ever shorter in t towards its end: t = 1 − (1 − s)³.
 
-    The tension of a rod that a support stretches grows as 1/(1 − t), to many times EI/ℓ² in a taut wire. Steps that
-    this tension bounds too do not reach t = 1.
+    The tension of a rod that a support stretches grows as 1/(1 − t), to many times EI/ℓ² in a taut wire or a cable with
+    little sag. Steps that this tension bounds too do not reach t = 1.
     """
     shape = model.discrete.unknowns.differential
 
@@ -105,6 +115,7 @@ def paced_by_shape(path: Path, model: Model) -> Path:
         tangent=None if path.tangent is None else PACE * path.tangent,
         step_weights=model.step_weights * shape,
         first_step=path.first_step / PACE,
+        exact_tangents=True,
         admits=admits,
     )
 

@@ -20,11 +20,13 @@ from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.judge import correct, judge
 from cosserat_casadi.equilibrium.load_path import (
+    NEARLY_LOADED,
     backwards,
     column,
     continuation_limits,
     input_path,
     load_path,
+    may_stretch,
     paced_by_shape,
 )
 from cosserat_casadi.equilibrium.locking import with_locking_note
@@ -38,6 +40,7 @@ from cosserat_casadi.equilibrium.smooth_passage import (
     places_between,
 )
 from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.taut_rods import held_taut, is_closed
 from cosserat_casadi.errors import Problem, SceneError, SolveError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -50,7 +53,6 @@ from cosserat_casadi.numerics.continuation import ContinuationResult, Continuati
 from cosserat_casadi.numerics.newton import NewtonResult, relative_norm
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress
-from cosserat_casadi.scene.rod_records import STRAINS
 
 CANNOT_RELAX = " The search for less energy takes no assemblies, free rods and cables of given length."
 """Sentence in the message of a solution that cannot be relaxed."""
@@ -64,11 +66,11 @@ NONE_STABLE = " The search for less energy found no stable equilibrium."
 AT_ONCE = " The start has other parameters, and rods would pass through an obstacle or a rod: change them by less."
 """Sentence in the message if the path from a solution with other parameters does not end at a solution."""
 
+TAUT_PATH = " Tension grew large on the load path: the shape alone bounded its steps."
+"""Sentence in the message of a solution on a path that :func:`paced_by_shape` makes."""
+
 NOTHING = 1e-14
 """Relative norm of a residual that is rounding alone, as that of the unloaded scene without loads is."""
-
-NEARLY_LOADED = 0.99
-"""Load factor beyond which a stalled path may be one that pulls a rod taut."""
 
 Start = Solution | FloatArray | None
 """Start of a solve: a solution, unknowns, or None for the unloaded rod."""
@@ -153,12 +155,14 @@ class _End:
         outcome: outcome that the method reports.
         iterations: number of its Newton steps.
         load_factor: share of the loads that it reached.
+        paced: whether the shape alone bounded the steps of its path.
     """
 
     x: FloatArray
     outcome: Outcome
     iterations: int
     load_factor: float = 1.0
+    paced: bool = False
 
 
 def solve(
@@ -221,6 +225,8 @@ def solve(
         solution = replace(solution, message=solution.message + AT_ONCE)
     if stalled and start is None:
         solution = _settled_on_obstacles(solution, limits, progress)
+    if end.paced:
+        solution = replace(solution, message=solution.message + TAUT_PATH)
     if stable and not solution.stable:
         solution = stabilised(solution, limits, progress)
     if estimate_error:
@@ -374,22 +380,42 @@ def _continuation(task: _Task) -> _End:
     path = past_no_obstacle(path, task.model, inputs, before_it=task.places_of_start)
     result = follow(path, task.limits, task.progress)
     stalled = result.outcome is Outcome.LOAD_STALLED
-    if stalled and not isinstance(task.start, Solution) and result.reached > NEARLY_LOADED:
-        result = _stretched(task, path, result)
+    paced = None
+    nearly = stalled and not isinstance(task.start, Solution) and result.reached > NEARLY_LOADED
+    if nearly and may_stretch(task.model):
+        paced = _paced(task, path)
+    if paced is not None:
+        ended = paced if paced.outcome is Outcome.CONVERGED else result
+        result = replace(ended, iterations=result.iterations + paced.iterations)
+    is_paced = paced is not None and result.outcome is Outcome.CONVERGED
     if result.outcome is not Outcome.CONVERGED:
         result = _with_parameters(task, result)
-    return _End(result.x, result.outcome, result.iterations, result.reached)
+    return _End(result.x, result.outcome, result.iterations, result.reached, is_paced)
 
 
-def _stretched(task: _Task, path: Path, failed: ContinuationResult) -> ContinuationResult:
-    """The end of a load path that stretches rods, where the shape alone bounds its steps; else the failed end."""
+def _taut(task: _Task) -> _End:
+    """End of the load path whose steps the shape alone bounds; of a continuation if that does not converge."""
+    if task.start is None:
+        path = past_no_obstacle(load_path(task.model, task.inputs), task.model, (task.inputs, task.inputs))
+        result = _paced(task, path)
+        if result is not None and result.outcome is Outcome.CONVERGED:
+            return _End(result.x, result.outcome, result.iterations, paced=True)
+    return _continuation(task)
+
+
+def _paced(task: _Task, path: Path) -> ContinuationResult | None:
+    """The end of a load path if the shape alone bounds its steps; None without supports, and for rods held straight."""
+    model = task.model
+    if all(model.discrete.unknowns.differential):
+        return None
+    extend = may_stretch(model)
+    if not extend and (not model.discrete.constraints or model.scene.bodies or held_taut(model, task.inputs)):
+        return None
+    result = follow(paced_by_shape(path, model), task.limits, task.progress)
     # The tension of a rod that cannot extend may grow without bound, and the residual counts relative to it.
-    extend = all(STRAINS.index("extension") in rod.admitted for rod in task.model.scene.rods)
-    if not extend or all(task.model.discrete.unknowns.differential):
-        return failed
-    result = follow(paced_by_shape(path, task.model), task.limits, task.progress)
-    iterations = failed.iterations + result.iterations
-    return replace(result if result.outcome is Outcome.CONVERGED else failed, iterations=iterations)
+    if result.outcome is Outcome.CONVERGED and not extend and not is_closed(model, task.inputs, result.x):
+        result = replace(result, outcome=Outcome.LOAD_STALLED)
+    return result
 
 
 def _with_parameters(task: _Task, failed: ContinuationResult) -> ContinuationResult:
@@ -468,6 +494,7 @@ def _nlpsol(task: _Task) -> _End:
 
 _METHODS: dict[str, Callable[[_Task], _End]] = {
     "continuation": _continuation,
+    "taut": _taut,
     "rootfinder": _rootfinder,
     "nlpsol": _nlpsol,
 }

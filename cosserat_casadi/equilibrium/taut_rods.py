@@ -39,10 +39,10 @@ def held_taut(model: Model, inputs: FloatArray) -> bool:
     discrete = model.discrete
     if not discrete.constraints or model.scene.bodies:
         return False
-    held = np.r_[tuple(entries for _, entries in discrete.unknowns.of_kind(BlockKind.MULTIPLIER))]
     unloaded = model.unloaded()
-    if np.abs(column(model.path_residual(unloaded, inputs, 1.0))[held]).max() > CLOSED:
+    if not is_closed(model, inputs, unloaded):
         return False
+    held = np.r_[tuple(entries for _, entries in discrete.unknowns.of_kind(BlockKind.MULTIPLIER))]
     # With few modes a curved rod may be locked too, which more modes mend.
     stiff = [rod.name for rod in model.scene.rods if not set(rod.admitted) & SHEAR_AND_EXTENSION]
     if not any(_is_straight(model, unloaded, inputs, name) for name in stiff):
@@ -50,6 +50,13 @@ def held_taut(model: Model, inputs: FloatArray) -> bool:
     changes = model.path_jacobian(unloaded, inputs, 1.0).full()[np.ix_(held, model.shape_unknowns)]
     singular = np.linalg.svd(changes, compute_uv=False)
     return bool(len(singular) < len(changes) or singular[-1] <= DEPENDENT * singular[0])
+
+
+def is_closed(model: Model, inputs: FloatArray, x: FloatArray) -> bool:
+    """Whether rods and bodies meet their supports and joints, however large the forces are."""
+    held = np.r_[tuple(entries for _, entries in model.discrete.unknowns.of_kind(BlockKind.MULTIPLIER))]
+    gaps = np.abs(column(model.path_residual(x, inputs, 1.0))[held])
+    return bool(gaps.max(initial=0.0) <= CLOSED)
 
 
 def _is_straight(model: Model, x: FloatArray, inputs: FloatArray, rod: str) -> bool:

@@ -165,7 +165,17 @@ def dense(jacobian: Jacobian) -> FloatArray:
 
 
 def _regular_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray | None:
-    """Solve with a regular Jacobian; None if it is singular up to rounding.
+    """Solve with a regular Jacobian; None if it is singular up to rounding."""
+    step = _well_conditioned_step(jacobian, residual, np.ones(len(residual)))
+    if step is not None:
+        return step
+    # Tension makes some rows of a taut rod large. A neutral direction stays singular without their size.
+    units = np.sqrt(np.maximum(1.0, np.abs(jacobian).max(axis=1)))
+    return _well_conditioned_step(jacobian, residual, units) if units.max() > 1.0 else None
+
+
+def _well_conditioned_step(jacobian: FloatArray, residual: FloatArray, units: FloatArray) -> FloatArray | None:
+    """Solve with a Jacobian; None if the Jacobian over the units of its rows and of its columns is singular.
 
     The factors also solve for a probe with components in all directions: small singular values lengthen its solution.
     """
@@ -173,14 +183,14 @@ def _regular_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray | No
     numbers = np.arange(1.0, len(residual) + 1.0)
     probe = np.cos(numbers**2)
     probe = probe / np.linalg.norm(probe)
-    right_sides = np.column_stack([-residual, probe])
+    right_sides = np.column_stack([-residual, units * probe])
     try:
         solutions = np.linalg.solve(jacobian, right_sides)
     except np.linalg.LinAlgError:
         return None
     with np.errstate(all="ignore"):
-        inverse_size = np.linalg.norm(solutions[:, 1])
-        size = np.abs(jacobian).max()
+        inverse_size = np.linalg.norm(units * solutions[:, 1])
+        size = (np.abs(jacobian) / np.outer(units, units)).max()
         condition = float(inverse_size * size)
     # Not "condition > bound": a condition that is not a number must count as singular too.
     if not condition <= 1.0 / SINGULAR:

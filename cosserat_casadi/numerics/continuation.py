@@ -52,6 +52,8 @@ class Path:
         tangent: dx/dt at the start if it is known, and with it that the start is an equilibrium; else None.
         step_weights: weight of each unknown in the length of a step, shape (n,); None for equal weights.
         first_step: longest first step in t.
+        exact_tangents: whether a tangent takes the Jacobian at its point. Newton's last one may be far from it where
+            small corrections turn large forces.
         admits: ((x, t) before, (x, t) after) ↦ whether a step may lead from one to the other; None to admit all. A
             refused step is halved.
     """
@@ -63,6 +65,7 @@ class Path:
     tangent: FloatArray | None = None
     step_weights: FloatArray | None = None
     first_step: float = 1.0
+    exact_tangents: bool = False
     admits: Callable[[PathPoint, PathPoint], bool] | None = None
 
     def length(self, change: FloatArray) -> float:
@@ -251,8 +254,8 @@ def _first_point(path: Path, limits: ContinuationSettings) -> _Point:
 def _point(path: Path, correction: NewtonResult, t: float) -> _Point:
     """Make a corrected point with its tangent dx/dt = −(∂g/∂x)⁻¹ ∂g/∂t, by the last Jacobian of the correction."""
     jacobian = correction.last_jacobian
-    if jacobian is None:
-        # The prediction was good enough already: nothing has been linearised.
+    if jacobian is None or path.exact_tangents:
+        # Without one the prediction was good enough already: nothing has been linearised.
         jacobian = UpdatedJacobian(path.jacobian(correction.x, t))
         correction = replace(correction, last_jacobian=jacobian)
     rate = path.rate(correction.x, t)

@@ -8,12 +8,18 @@ static const path_limits LONG_PATH = {
     .first_step = 0,
 };
 
+/* Share of the loads at t: t, or 1 - (1 - t)^3 on a paced path. */
+static real load_factor_at(const load_path *path, real t) {
+  const real rest = 1 - t;
+  return path->is_paced ? 1 - rest * rest * rest : t;
+}
+
 /* The loads at t; the inputs lie in the workspace until the next call. */
 static loads loads_at(const load_path *path, real t, workspace *work) {
   loads at = {work->path_inputs, 1};
   if (path->grows_load) {
     at.inputs = path->to;
-    at.load_factor = t;
+    at.load_factor = load_factor_at(path, t);
     return at;
   }
   /* The interpolation is exact at both ends, however different in size both are. */
@@ -21,19 +27,19 @@ static loads loads_at(const load_path *path, real t, workspace *work) {
   return at;
 }
 
-/* Length of a change of the unknowns: strains and poses count whole, forces by a share. */
-static real step_length(const real *step) {
+/* Length of a change of the unknowns: strains and poses count whole, forces by a share, or not on a paced path. */
+static real step_length(const real *step, int is_paced) {
   real sum = 0;
   for (int i = 0; i < N; i++) {
-    const real weighted = step[i] * STEP_WEIGHTS[i];
+    const real weighted = is_paced && !IS_SHAPE[i] ? 0 : step[i] * STEP_WEIGHTS[i];
     sum += weighted * weighted;
   }
   return SQUARE_ROOT(sum);
 }
 
 /* Whether a correction leaves a point on the path and not on another. */
-static int is_small(const real *correction, const real *predicted) {
-  return step_length(correction) <= (real)0.3 + (real)0.5 * step_length(predicted);
+static int is_small(const progress *now, const real *correction, const real *predicted) {
+  return step_length(correction, now->is_paced) <= (real)0.3 + (real)0.5 * step_length(predicted, now->is_paced);
 }
 
 /* The response to the rate of the residual. Returns zero if the rate is not finite, or the Jacobian not regular. */
@@ -48,7 +54,9 @@ static void set_tangent(path_point *point, int sound, const updated_jacobian *ja
 static int tangent_at(const load_path *path, path_point *point, int has_jacobian, updated_jacobian *jacobian,
                       workspace *work) {
   const loads at = loads_at(path, point->t, work);
-  const real load_factor_rate = path->grows_load ? 1 : 0;
+  const real rest = 1 - point->t;
+  const real pace = path->is_paced ? PACE * rest * rest : 1;
+  const real load_factor_rate = path->grows_load ? pace : 0;
   int jacobians = 0;
   for (int i = 0; i < INPUTS; i++) work->inputs_rate[i] = path->grows_load ? 0 : path->to[i] - path->from[i];
   rate_at(point->x, &at, work->inputs_rate, load_factor_rate, work->rate, work);
@@ -64,7 +72,8 @@ static int tangent_at(const load_path *path, path_point *point, int has_jacobian
 
 /* Predictor: the change of x by the cubic through two points and their tangents; by the tangent where there is one point,
    or the two differ much. */
-static void predict(const path_point *point, const path_point *previous, real step, real *predicted, real *bent) {
+static void predict(const path_point *point, const path_point *previous, real step, int is_paced, real *predicted,
+                    real *bent) {
   for (int i = 0; i < N; i++) predicted[i] = step * point->tangent[i];
   if (!previous) return;
   const real interval = point->t - previous->t;
@@ -74,14 +83,14 @@ static void predict(const path_point *point, const path_point *previous, real st
     const real cubic = interval * (point->tangent[i] + previous->tangent[i]) - 2 * change;
     bent[i] = share * share * (cubic + interval * point->tangent[i] - change) + share * share * share * cubic;
   }
-  if (step_length(bent) > MAX_CURVATURE_SHARE * step_length(predicted)) return;
+  if (step_length(bent, is_paced) > MAX_CURVATURE_SHARE * step_length(predicted, is_paced)) return;
   for (int i = 0; i < N; i++) predicted[i] += bent[i];
 }
 
 /* Length of the next step from the wanted one; zero if it is too short to go on. */
 static real admissible_step(const progress *now, real wanted) {
   const real rest = 1 - now->point->t;
-  const real length = step_length(now->point->tangent);
+  const real length = step_length(now->point->tangent, now->is_paced);
   real step = wanted > rest ? rest : wanted;
   if (step * length > MAX_STEP_LENGTH) step = MAX_STEP_LENGTH / length;
   return step < MIN_STEP && step < rest ? 0 : step;
@@ -92,7 +101,7 @@ static void predict_next(const progress *now, real step, workspace *work) {
   path_point *next = now->next;
   const real end = now->point->t + step;
   next->t = end > 1 - (real)1e-12 ? 1 : end;
-  predict(now->point, now->previous, step, work->predicted, work->correction);
+  predict(now->point, now->previous, step, now->is_paced, work->predicted, work->correction);
   for (int i = 0; i < N; i++) next->x[i] = now->point->x[i] + work->predicted[i];
 }
 
@@ -101,7 +110,7 @@ static void predict_next(const progress *now, real step, workspace *work) {
 static int is_promising(const progress *now, workspace *work) {
   if (!now->has_jacobian) return 1;
   if (!response(now->jacobian, now->point->residual, now->next->residual, work->correction, work)) return 1;
-  return is_small(work->correction, work->predicted);
+  return is_small(now, work->correction, work->predicted);
 }
 
 /* Corrector: Newton at the next point, inexact on the way and exact at the end, without damping: far from the path
@@ -120,7 +129,7 @@ static newton_limits corrector_limits(const path_point *next, int max_iterations
 static int is_trusted(const load_path *path, const newton_result *result, const progress *now, workspace *work) {
   if (result->status != SOLVER_CONVERGED || result->damped) return 0;
   for (int i = 0; i < N; i++) work->correction[i] = now->next->x[i] - now->point->x[i] - work->predicted[i];
-  return is_small(work->correction, work->predicted) && !is_barred(path, now, work);
+  return is_small(now, work->correction, work->predicted) && !is_barred(path, now, work);
 }
 
 /* The next point becomes the point. */
@@ -155,7 +164,9 @@ static progress begin_path(int has_jacobian, workspace *work) {
 static progress follow_path(const load_path *path, const path_limits *limits, int has_jacobian, workspace *work,
                             solver_info *info) {
   progress now = begin_path(has_jacobian, work);
+  now.is_paced = path->is_paced;
   real step = path->grows_load ? FIRST_STEP : 1;
+  if (path->is_paced) step /= PACE;
   if (limits->first_step > 0) step = limits->first_step;
   for (int k = 0; k < limits->max_steps && info->iterations < limits->max_iterations; k++) {
     step = admissible_step(&now, step);
@@ -177,7 +188,9 @@ static progress follow_path(const load_path *path, const path_limits *limits, in
     }
     if (now.next->t < 1) {
       if (result.jacobians <= GROW_BELOW) step *= 2;
-      info->jacobians += tangent_at(path, now.next, result.jacobians > 0, now.spare, work);
+      /* Where small corrections turn large forces, Newton's last Jacobian is no guide. */
+      const int has_one = result.jacobians > 0 && !path->is_paced;
+      info->jacobians += tangent_at(path, now.next, has_one, now.spare, work);
     }
     accept_next(&now);
     if (now.point->t == 1) {
@@ -187,7 +200,7 @@ static progress follow_path(const load_path *path, const path_limits *limits, in
       break;
     }
   }
-  info->load_factor = now.point->t;
+  info->load_factor = path->grows_load ? load_factor_at(path, now.point->t) : now.point->t;
   now.step = step;
   return now;
 }
@@ -206,9 +219,9 @@ static updated_jacobian *follow_to_the_end(const load_path *path, int has_jacobi
   return 0;
 }
 
-/* Returns Newton's last Jacobian at the solution, or null. */
-static updated_jacobian *solve_from_unloaded(const real *inputs, real *x, workspace *work, solver_info *info) {
-  const load_path path = {.grows_load = 1, .from = inputs, .to = inputs};
+/* Follows the load path, paced or not. Returns Newton's last Jacobian at the solution, or null. */
+static updated_jacobian *grow_loads(const real *inputs, int is_paced, real *x, workspace *work, solver_info *info) {
+  const load_path path = {.grows_load = 1, .is_paced = is_paced, .from = inputs, .to = inputs};
   path_point *first = work->points;
   memset(x, 0, N * sizeof *x);
   memset(first, 0, sizeof *first);
@@ -217,7 +230,16 @@ static updated_jacobian *solve_from_unloaded(const real *inputs, real *x, worksp
     info->status = SOLVER_NOT_FINITE;
     return 0;
   }
+  for (int i = 0; is_paced && i < N; i++) first->tangent[i] *= PACE;
   return follow_to_the_end(&path, 0, x, work, info);
+}
+
+/* The tension of a rod that a support stretches may bound the steps so that they do not reach the full load: then the
+   shape alone bounds them. Returns Newton's last Jacobian at the solution, or null. */
+static updated_jacobian *solve_from_unloaded(const real *inputs, real *x, workspace *work, solver_info *info) {
+  updated_jacobian *jacobian = grow_loads(inputs, 0, x, work, info);
+  const int stalled = info->status == SOLVER_LOAD_STALLED;
+  return PACES && stalled && info->load_factor > NEARLY_LOADED ? grow_loads(inputs, 1, x, work, info) : jacobian;
 }
 
 /* Begins a path at the equilibrium near x for the inputs `from`: in points[0], with tangent and Jacobian. */

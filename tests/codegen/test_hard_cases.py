@@ -44,6 +44,15 @@ def deep_arch() -> Scene:
     return scene(crown, rods=[arch], supports=[hinge])
 
 
+def slack_cable() -> Scene:
+    """Its tension, 4000 EI/L², bounds the steps so that the first load path stalls."""
+    strains = {"bending_y": 2.0, "extension": 1e6}
+    cable = rod(list(strains), length=10.4, stiffness=strains, base={"position": [0, 0, 0], "tangent": [1, 0, 0]})
+    clamp = {"rod": "rod", "kind": "clamped", "position": [10, 0, 0], "tangent": [1, 0, 0]}
+    weight = {"name": "weight", "kind": "gravity", "acceleration": [0, 0, -9.81]}
+    return scene(weight, rods=[cable], supports=[clamp])
+
+
 SIDE = {"frame": "body", "force": [40.0, 0, 0]}
 
 CASES = {
@@ -84,6 +93,17 @@ def test_deep_arch_about_its_limit_load_vs_python(export_recipe: ExportRecipe, f
     assert_allclose(ours.load_factor, theirs.load_factor, rtol=0, atol=1e-3)
     if outcome is Outcome.LOAD_STALLED:
         assert_allclose(force * ours.load_factor, 8.97309, rtol=5e-3, atol=0)
+
+
+def test_slack_cable_vs_python(export_recipe: ExportRecipe) -> None:
+    made = export_recipe("hard_cable", Recipe(slack_cable(), 6, 16), estimates=False)
+    inputs = made.model.pack()
+    theirs = made.solve(inputs)
+    assert theirs.converged
+    for ours in (made.compiled.solve(inputs), *made.compiled.solve_batch([inputs, 2 * inputs])[:1]):
+        assert ours.converged
+        assert ours.load_factor == 1.0
+        assert_allclose(ours.x, theirs.x, rtol=1e-8, atol=1e-8)
 
 
 def test_unresolved_from_every_start(export_recipe: ExportRecipe) -> None:

@@ -166,6 +166,7 @@ def _words(
         "lengths": numbers(robot.length.tolist()),
         "step_weights": numbers([1.0] * size),
         "is_shape": numbers([1] * size),
+        "paces": 0,
         "accuracy_note": _accuracy_note(model, error_estimate),
     }
 

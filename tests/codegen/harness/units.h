@@ -82,15 +82,15 @@ static int test_predictor(workspace *work) {
     point->x[i] = c * pow(0.5, 3) + 5 * 0.5;
     point->tangent[i] = 3 * c * pow(0.5, 2) + 5;
   }
-  predict(point, previous, step, predicted, bent);
+  predict(point, previous, step, 0, predicted, bent);
   for (int i = 0; i < N; i++) {
     const real c = 0.3 * i + 1;
     CHECK(fabs(point->x[i] + predicted[i] - (c * pow(0.6, 3) + 5 * 0.6)) < 1e-12);
   }
   for (int i = 0; i < N; i++) point->x[i] += 100;
-  predict(point, previous, step, predicted, bent);
+  predict(point, previous, step, 0, predicted, bent);
   for (int i = 0; i < N; i++) CHECK(fabs(predicted[i] - step * point->tangent[i]) < 1e-12);
-  predict(point, 0, step, predicted, bent);
+  predict(point, 0, step, 0, predicted, bent);
   for (int i = 0; i < N; i++) CHECK(fabs(predicted[i] - step * point->tangent[i]) < 1e-12);
   return 0;
 }
