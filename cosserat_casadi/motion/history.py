@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
@@ -183,8 +182,9 @@ class History:
     carried: CarriedContacts | None = None
 
     def __getstate__(self) -> dict[str, Any]:
-        # The record of contacts has functions in symbols of one process; it is made anew where it is asked for.
-        return {name: value for name, value in vars(self).items() if name != "contacts"}
+        # The record of contacts has functions in symbols of one process; it is made anew where it is asked for. So are
+        # the arrays of steps, which would be kept twice.
+        return {name: value for name, value in vars(self).items() if name not in ("contacts", "rows")}
 
     @property
     def begin(self) -> float:
@@ -229,10 +229,19 @@ class History:
         """All steps in order of time, with their legs."""
         return [(leg, step) for leg in self.legs for step in leg.integration.steps]
 
-    @property
+    @cached_property
     def rows(self) -> list[StepRows]:
         """The steps of each leg, as arrays, without legs that have no steps."""
-        return [StepRows.of(leg.integration.steps) for leg in self.legs if leg.integration.steps]
+        return [StepRows.of(leg.integration.steps) for leg in self._moving_legs]
+
+    @cached_property
+    def _moving_legs(self) -> list[Leg]:
+        return [leg for leg in self.legs if leg.integration.steps]
+
+    @cached_property
+    def _first_numbers(self) -> npt.NDArray[np.intp]:
+        """Numbers of the first steps of the legs that have steps."""
+        return np.cumsum([0, *map(len, self.rows)])[:-1]
 
     @cached_property
     def statistics(self) -> StepStatistics:
@@ -276,18 +285,24 @@ class History:
 
     def locate(self, time: float) -> tuple[Leg, Instant]:
         """Instant at a time within the motion, with the leg that contains it; at a jump, the leg before it."""
-        if not self.end_times:
+        if not len(self.end_times):
             leg = self.legs[0]
             return leg, self.of_model(leg.start.instant)
-        leg, step = self.steps[self.number_at(time)]
+        leg, step = self._step(self.number_at(time))
         return leg, self.of_model(step.at(time))
+
+    def _step(self, number: int) -> tuple[Leg, TimeStep]:
+        """The step of a number, and its leg."""
+        of_leg = int(np.searchsorted(self._first_numbers, number, side="right")) - 1
+        leg = self._moving_legs[of_leg]
+        return leg, leg.integration.steps[number - self._first_numbers[of_leg]]
 
     def touching(self, time: float) -> tuple[MotionContact, ...]:
         """Contacts at a time within the motion; none in a scene without exact contact."""
-        if self.contacts is None or not self.end_times:
+        if self.contacts is None or not len(self.end_times):
             return ()
         number = self.number_at(time)
-        _, step = self.steps[number]
+        _, step = self._step(number)
         # The stages of a short first step have rounding over its square in their forces, and more where it begins.
         instant = step.start if time == step.start.time else step.at(time)
         return self.contacts.at(number, self.flight.to_model(instant))
@@ -312,7 +327,7 @@ class History:
 
     def number_at(self, time: float) -> int:
         """Number of the step that contains a time; at the end of a step, the number of that step."""
-        return min(bisect_left(self.end_times, time), len(self.end_times) - 1)
+        return int(min(np.searchsorted(self.end_times, time), len(self.end_times) - 1))
 
     def rough_positions(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Unknowns and inputs at T times by the polynomials of the steps, shapes (T, size) and (T, inputs).
@@ -333,20 +348,15 @@ class History:
 
     def _held(self, times: FloatArray) -> Iterator[tuple[Leg, npt.NDArray[np.bool_] | slice, HeldTimes | None]]:
         """Legs that hold some of T times, which ones, shape (T,), and these in their steps; None without a step."""
-        if not self.end_times:
+        if not len(self.end_times):
             yield self.legs[0], slice(None), None
             return
         numbers = np.minimum(np.searchsorted(self.end_times, times), len(self.end_times) - 1)
-        if len(self.legs) == 1:
-            yield self.legs[0], slice(None), HeldTimes(self.rows[0], numbers, times)
-            return
-        first = 0
-        for leg in self.legs:
-            steps = leg.integration.steps
-            rows = (first <= numbers) & (numbers < first + len(steps))
-            if np.any(rows):
-                yield leg, rows, HeldTimes(StepRows.of(steps), numbers[rows] - first, times[rows])
-            first += len(steps)
+        of_legs = np.searchsorted(self._first_numbers, numbers, side="right") - 1
+        for of_leg in np.unique(of_legs).tolist():
+            rows = of_legs == of_leg
+            own_numbers = numbers[rows] - self._first_numbers[of_leg]
+            yield self._moving_legs[of_leg], rows, HeldTimes(self.rows[of_leg], own_numbers, times[rows])
 
     def once(self, name: str, duration: float, computed: Callable[[], Known]) -> Known:
         """Return a result for the motion up to a duration, s, which is computed once and kept under its name."""
@@ -378,9 +388,9 @@ class History:
         return Closing(self.model, Libraries(*of_kernels))
 
     @cached_property
-    def end_times(self) -> list[float]:
+    def end_times(self) -> FloatArray:
         """Times at the ends of all steps, s."""
-        return [time for rows in self.rows for time in rows.end_times.tolist()]
+        return np.concatenate([np.zeros(0), *(rows.end_times for rows in self.rows)])
 
 
 @dataclass(frozen=True)
