@@ -182,8 +182,7 @@ class History:
     carried: CarriedContacts | None = None
 
     def __getstate__(self) -> dict[str, Any]:
-        # The record of contacts has functions in symbols of one process; it is made anew where it is asked for. So are
-        # the arrays of steps, which would be kept twice.
+        # The record of contacts has functions in symbols of one process, and arrays would keep the steps twice.
         return {name: value for name, value in vars(self).items() if name not in ("contacts", "rows")}
 
     @property
@@ -232,30 +231,22 @@ class History:
     @cached_property
     def rows(self) -> list[StepRows]:
         """The steps of each leg, as arrays, without legs that have no steps."""
-        return [StepRows.of(leg.integration.steps) for leg in self._moving_legs]
+        return [StepRows.of(leg.integration.steps) for leg in self._stepping[0]]
 
     @cached_property
-    def _moving_legs(self) -> list[Leg]:
-        return [leg for leg in self.legs if leg.integration.steps]
-
-    @cached_property
-    def _first_numbers(self) -> npt.NDArray[np.intp]:
-        """Numbers of the first steps of the legs that have steps."""
-        return np.cumsum([0, *map(len, self.rows)])[:-1]
+    def _stepping(self) -> tuple[list[Leg], npt.NDArray[np.intp]]:
+        """The legs that have steps, and the number of the first step of each."""
+        legs = [leg for leg in self.legs if leg.integration.steps]
+        return legs, np.cumsum([0, *(len(leg.integration.steps) for leg in legs)])[:-1]
 
     @cached_property
     def statistics(self) -> StepStatistics:
         """Statistics of the steps: numbers, iterations and sizes."""
         sizes = [size for rows in self.rows for size in rows.facts[:, 2].tolist()]
         counts = [leg.integration.statistics for leg in self.legs]
-        return StepStatistics(
-            steps=sum(count.steps for count in counts),
-            rejected=sum(count.rejected for count in counts),
-            iterations=sum(count.iterations for count in counts),
-            jacobians=sum(count.jacobians for count in counts),
-            smallest_step=min(sizes, default=float("nan")),
-            largest_step=max(sizes, default=float("nan")),
-        )
+        cost = sum(counts[1:], counts[0])
+        smallest, largest = min(sizes, default=float("nan")), max(sizes, default=float("nan"))
+        return StepStatistics(cost.steps, cost.rejected, cost.iterations, cost.jacobians, smallest, largest)
 
     def at(self, time: float) -> MotionState:
         """State at a time within the motion, by the dense output of the steps; at a jump, the state before it."""
@@ -286,16 +277,14 @@ class History:
     def locate(self, time: float) -> tuple[Leg, Instant]:
         """Instant at a time within the motion, with the leg that contains it; at a jump, the leg before it."""
         if not len(self.end_times):
-            leg = self.legs[0]
-            return leg, self.of_model(leg.start.instant)
+            return self.legs[0], self.of_model(self.legs[0].start.instant)
         leg, step = self._step(self.number_at(time))
         return leg, self.of_model(step.at(time))
 
     def _step(self, number: int) -> tuple[Leg, TimeStep]:
-        """The step of a number, and its leg."""
-        of_leg = int(np.searchsorted(self._first_numbers, number, side="right")) - 1
-        leg = self._moving_legs[of_leg]
-        return leg, leg.integration.steps[number - self._first_numbers[of_leg]]
+        legs, firsts = self._stepping
+        of_leg = int(np.searchsorted(firsts, number, side="right")) - 1
+        return legs[of_leg], legs[of_leg].integration.steps[number - firsts[of_leg]]
 
     def touching(self, time: float) -> tuple[MotionContact, ...]:
         """Contacts at a time within the motion; none in a scene without exact contact."""
@@ -327,7 +316,7 @@ class History:
 
     def number_at(self, time: float) -> int:
         """Number of the step that contains a time; at the end of a step, the number of that step."""
-        return int(min(np.searchsorted(self.end_times, time), len(self.end_times) - 1))
+        return min(int(np.searchsorted(self.end_times, time)), len(self.end_times) - 1)
 
     def rough_positions(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Unknowns and inputs at T times by the polynomials of the steps, shapes (T, size) and (T, inputs).
@@ -352,11 +341,11 @@ class History:
             yield self.legs[0], slice(None), None
             return
         numbers = np.minimum(np.searchsorted(self.end_times, times), len(self.end_times) - 1)
-        of_legs = np.searchsorted(self._first_numbers, numbers, side="right") - 1
+        legs, firsts = self._stepping
+        of_legs = np.searchsorted(firsts, numbers, side="right") - 1
         for of_leg in np.unique(of_legs).tolist():
             rows = of_legs == of_leg
-            own_numbers = numbers[rows] - self._first_numbers[of_leg]
-            yield self._moving_legs[of_leg], rows, HeldTimes(self.rows[of_leg], own_numbers, times[rows])
+            yield legs[of_leg], rows, HeldTimes(self.rows[of_leg], numbers[rows] - firsts[of_leg], times[rows])
 
     def once(self, name: str, duration: float, computed: Callable[[], Known]) -> Known:
         """Return a result for the motion up to a duration, s, which is computed once and kept under its name."""
