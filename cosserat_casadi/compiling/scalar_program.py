@@ -164,16 +164,15 @@ def _copied(to: Lines, slots: Lines) -> Lines:
 
 def _definitions(lines: Lines) -> Lines:
     """Indices of the lines that wrote the operands of each line, −1 if none did, shape (lines, 2)."""
-    count = len(lines)
-    place = np.arange(count)
-    written = np.sort(lines[:, 1].astype(np.int64) * count + place)
-    columns = []
-    for slots in (lines[:, 2], lines[:, 3]):
-        before = written[np.searchsorted(written, slots.astype(np.int64) * count + place) - 1]
-        # Before the first one stands the last, of another slot or of a later line.
-        is_earlier = (before // count == slots) & (before % count < place)
-        columns.append(np.where(is_earlier, before % count, -1).astype(np.intc))
-    return np.stack(columns, axis=1)
+    # A stable sort by slot keeps the order of the program, in which a line reads its operands before it writes.
+    slots = lines[:, [2, 3, 1]].ravel()
+    order = np.argsort(slots.astype(np.min_scalar_type(slots.max(initial=0))), kind="stable")
+    ordered = slots[order]
+    last_write = np.maximum.accumulate(np.where(order % 3 == 2, np.arange(len(order)), -1))
+    is_same = (last_write >= 0) & (ordered[last_write] == ordered)
+    definitions = np.empty(len(order), np.intc)
+    definitions[order] = np.where(is_same, order[last_write] // 3, -1)
+    return definitions.reshape(-1, 3)[:, :2]
 
 
 def _are_results(lines: Lines, results: slice) -> npt.NDArray[np.bool_]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
@@ -183,8 +182,8 @@ class History:
     carried: CarriedContacts | None = None
 
     def __getstate__(self) -> dict[str, Any]:
-        # The record of contacts has functions in symbols of one process; it is made anew where it is asked for.
-        return {name: value for name, value in vars(self).items() if name != "contacts"}
+        # The record of contacts has functions in symbols of one process, and arrays would keep the steps twice.
+        return {name: value for name, value in vars(self).items() if name not in ("contacts", "rows")}
 
     @property
     def begin(self) -> float:
@@ -229,24 +228,25 @@ class History:
         """All steps in order of time, with their legs."""
         return [(leg, step) for leg in self.legs for step in leg.integration.steps]
 
-    @property
+    @cached_property
     def rows(self) -> list[StepRows]:
         """The steps of each leg, as arrays, without legs that have no steps."""
-        return [StepRows.of(leg.integration.steps) for leg in self.legs if leg.integration.steps]
+        return [StepRows.of(leg.integration.steps) for leg in self._stepping[0]]
+
+    @cached_property
+    def _stepping(self) -> tuple[list[Leg], npt.NDArray[np.intp]]:
+        """The legs that have steps, and the number of the first step of each."""
+        legs = [leg for leg in self.legs if leg.integration.steps]
+        return legs, np.cumsum([0, *(len(leg.integration.steps) for leg in legs)])[:-1]
 
     @cached_property
     def statistics(self) -> StepStatistics:
         """Statistics of the steps: numbers, iterations and sizes."""
         sizes = [size for rows in self.rows for size in rows.facts[:, 2].tolist()]
         counts = [leg.integration.statistics for leg in self.legs]
-        return StepStatistics(
-            steps=sum(count.steps for count in counts),
-            rejected=sum(count.rejected for count in counts),
-            iterations=sum(count.iterations for count in counts),
-            jacobians=sum(count.jacobians for count in counts),
-            smallest_step=min(sizes, default=float("nan")),
-            largest_step=max(sizes, default=float("nan")),
-        )
+        cost = sum(counts[1:], counts[0])
+        smallest, largest = min(sizes, default=float("nan")), max(sizes, default=float("nan"))
+        return StepStatistics(cost.steps, cost.rejected, cost.iterations, cost.jacobians, smallest, largest)
 
     def at(self, time: float) -> MotionState:
         """State at a time within the motion, by the dense output of the steps; at a jump, the state before it."""
@@ -276,18 +276,22 @@ class History:
 
     def locate(self, time: float) -> tuple[Leg, Instant]:
         """Instant at a time within the motion, with the leg that contains it; at a jump, the leg before it."""
-        if not self.end_times:
-            leg = self.legs[0]
-            return leg, self.of_model(leg.start.instant)
-        leg, step = self.steps[self.number_at(time)]
+        if not len(self.end_times):
+            return self.legs[0], self.of_model(self.legs[0].start.instant)
+        leg, step = self._step(self.number_at(time))
         return leg, self.of_model(step.at(time))
+
+    def _step(self, number: int) -> tuple[Leg, TimeStep]:
+        legs, firsts = self._stepping
+        of_leg = int(np.searchsorted(firsts, number, side="right")) - 1
+        return legs[of_leg], legs[of_leg].integration.steps[number - firsts[of_leg]]
 
     def touching(self, time: float) -> tuple[MotionContact, ...]:
         """Contacts at a time within the motion; none in a scene without exact contact."""
-        if self.contacts is None or not self.end_times:
+        if self.contacts is None or not len(self.end_times):
             return ()
         number = self.number_at(time)
-        _, step = self.steps[number]
+        _, step = self._step(number)
         # The stages of a short first step have rounding over its square in their forces, and more where it begins.
         instant = step.start if time == step.start.time else step.at(time)
         return self.contacts.at(number, self.flight.to_model(instant))
@@ -312,7 +316,7 @@ class History:
 
     def number_at(self, time: float) -> int:
         """Number of the step that contains a time; at the end of a step, the number of that step."""
-        return min(bisect_left(self.end_times, time), len(self.end_times) - 1)
+        return min(int(np.searchsorted(self.end_times, time)), len(self.end_times) - 1)
 
     def rough_positions(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Unknowns and inputs at T times by the polynomials of the steps, shapes (T, size) and (T, inputs).
@@ -333,20 +337,15 @@ class History:
 
     def _held(self, times: FloatArray) -> Iterator[tuple[Leg, npt.NDArray[np.bool_] | slice, HeldTimes | None]]:
         """Legs that hold some of T times, which ones, shape (T,), and these in their steps; None without a step."""
-        if not self.end_times:
+        if not len(self.end_times):
             yield self.legs[0], slice(None), None
             return
         numbers = np.minimum(np.searchsorted(self.end_times, times), len(self.end_times) - 1)
-        if len(self.legs) == 1:
-            yield self.legs[0], slice(None), HeldTimes(self.rows[0], numbers, times)
-            return
-        first = 0
-        for leg in self.legs:
-            steps = leg.integration.steps
-            rows = (first <= numbers) & (numbers < first + len(steps))
-            if np.any(rows):
-                yield leg, rows, HeldTimes(StepRows.of(steps), numbers[rows] - first, times[rows])
-            first += len(steps)
+        legs, firsts = self._stepping
+        of_legs = np.searchsorted(firsts, numbers, side="right") - 1
+        for of_leg in np.unique(of_legs).tolist():
+            rows = of_legs == of_leg
+            yield legs[of_leg], rows, HeldTimes(self.rows[of_leg], numbers[rows] - firsts[of_leg], times[rows])
 
     def once(self, name: str, duration: float, computed: Callable[[], Known]) -> Known:
         """Return a result for the motion up to a duration, s, which is computed once and kept under its name."""
@@ -378,9 +377,9 @@ class History:
         return Closing(self.model, Libraries(*of_kernels))
 
     @cached_property
-    def end_times(self) -> list[float]:
+    def end_times(self) -> FloatArray:
         """Times at the ends of all steps, s."""
-        return [time for rows in self.rows for time in rows.end_times.tolist()]
+        return np.concatenate([np.zeros(0), *(rows.end_times for rows in self.rows)])
 
 
 @dataclass(frozen=True)

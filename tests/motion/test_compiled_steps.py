@@ -279,6 +279,29 @@ def test_rod_that_a_tendon_moves(always: bool, tmp_path: Any, monkeypatch: pytes
     assert_allclose(at.v, expected.v, rtol=0, atol=1e-6)
 
 
+def test_kinks_of_a_record_are_evaluated_by_a_program() -> None:
+    """Programs compute four kinks at once, the virtual machine one after the other, to the same digits."""
+    times = np.linspace(0.0, 0.2, 200)
+    tensions = 2.0 + 4.0 * np.sin(8.0 * times) ** 2 + 0.1 * np.sin(900.0 * times)
+    recorded = {"input": "flexor.tension", "times": times.tolist(), "values": tensions.tolist()}
+    model = moving({**arm(), "motions": [recorded]})
+    simulation = model.scene.simulation
+    assert simulation is not None
+    found = []
+    for program in (None, scalar_program(model.inverse_dynamics_in_scalars)):
+        kernels = replace(interpreted(model), stepper=CompiledSteps)
+        assert isinstance(kernels.residual, RepeatedCall)
+        kernels.residual.program = program
+        simulator = Simulator(model, simulation, started(model, simulation, None), source=Kernels(kernels))
+        found.append(simulator.controlled(1e-4))
+    one_by_one, at_once = found
+    assert at_once.completed
+    assert at_once.statistics.steps < 150
+    for mine, expected in zip(at_once.rows, one_by_one.rows, strict=True):
+        assert_allclose(mine.facts[:, :4], expected.facts[:, :4], rtol=1e-9, atol=0)
+        assert_allclose(mine.ends[:, 0], expected.ends[:, 0], rtol=0, atol=1e-12)
+
+
 @pytest.mark.parametrize("as_program", [False, True], ids=["virtual machine", "program"])
 @pytest.mark.parametrize("example", ["bouncing_rod", "rod_hits_floor"])
 def test_steps_in_exact_contact(example: str, as_program: bool) -> None:

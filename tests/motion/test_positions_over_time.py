@@ -15,6 +15,7 @@ from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.pose_series import AT_ONCE, section_poses
 from cosserat_casadi.motion.simulate import started
 from cosserat_casadi.numerics.collocation import radau
+from cosserat_casadi.numerics.step import StepRows
 from tests import moving_scenes
 from tests.motion import transients
 from tests.motion.stepping import moving_model, stepped
@@ -111,3 +112,17 @@ def test_sections_at_many_times_take_little_more_memory_than_their_poses() -> No
         alone = section_poses(model, rod, X, x[row : row + 1], inputs[row : row + 1])
         assert_allclose(poses.position[row], alone.position[0], rtol=0, atol=1e-15)
         assert_allclose(poses.quaternion[row], alone.quaternion[0], rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize("scene", [closed_loop, free_rod, pushed_rod])
+def test_a_state_passes_over_no_other_steps(scene: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    history = history_of(scene())
+    first = history.at(0.02)
+    converted = []
+    monkeypatch.setattr(StepRows, "of", lambda steps: converted.append(len(steps)))
+    again = history.at(0.02)
+    assert not converted
+    assert "steps" not in vars(history)
+    assert_array_equal(again.x, first.x)
+    for time in (0.013, 0.047, 0.06):
+        assert_array_equal(history.at(time).x, history.states(np.array([0.005, time, 0.059])).x[1])

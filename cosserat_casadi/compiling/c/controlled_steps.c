@@ -830,6 +830,30 @@ static real answer_to(const real *forces, workspace *work) {
   return REAL_RATE * REAL_RATE * weighted_length(work->solutions, 1, work);
 }
 
+/* Start of the step, its kinks and its end: the times between which F is taken to be linear. */
+static real bend(int k, int first, int last, const workspace *work) {
+  return k < first ? work->time : k < last ? work->kinks[k] : work->time + work->size;
+}
+
+/* F at the state of the record at one of these times, by a program at four of them at once. */
+static void evaluate_bend(int k, int first, int last, workspace *work) {
+  const real time = bend(k, first, last, work);
+  const int lane = (k - first + 1) % LANES;
+  if (!work->program) {
+    evaluate_inputs(time, work);
+    evaluate(time, work);
+    return;
+  }
+  for (int ahead = 0; lane == 0 && ahead < LANES; ahead++) {
+    evaluate_inputs(bend(k + ahead, first, last, work), work);
+    fill_stage(ahead, work);
+  }
+  if (lane == 0) program_run(work->program, work->program_lines, work->slots);
+  for (int i = 0; i < OWN; i++) work->residual[i] = work->slots[LANES * (work->program_arguments + i) + lane];
+  if (work->push) evaluate_inputs(time, work);
+  push_contacts(work->residual, work);
+}
+
 /* Error over tolerance by what the stages do not see of the equations between them, at kinks of F in time. */
 static real overlooked_error(workspace *work) {
   const int n = N;
@@ -854,10 +878,9 @@ static real overlooked_error(workspace *work) {
   memset(impulse, 0, 2 * (size_t)n * sizeof *impulse);
   real share_before = 0;
   for (int k = first - 1; k <= last; k++) {
-    const real time = k < first ? begin : k < last ? work->kinks[k] : end;
-    const real share = (time - begin) / work->size;
+    const real share = (bend(k, first, last, work) - begin) / work->size;
     const real half = (share - share_before) / 2;
-    residual_at(time, middle, middle + n, middle + 2 * n, work);
+    evaluate_bend(k, first, last, work);
     for (int i = 0; i < n; i++) {
       real missed = 0;
       for (int power = STAGES - 1; power >= 0; power--) {
