@@ -155,9 +155,8 @@ class Resolution:
         if self.waves or self.preview.model.scene.supports:
             return LOADED_SWEEPS
         # A layer presses a part of an element, and products of waves are short: few modes do not show these at all.
-        fewest = min(min(discretisation.modes) for discretisation in self.preview.model.discretisation.values())
-        seen = fewest >= self._product_modes and not self.preview.model.discrete.pressed_rods
-        if self.extrapolated_error < NEGLIGIBLE * self.allowed and seen:
+        is_hidden = self._product_modes or self.preview.model.discrete.pressed_rods
+        if self.extrapolated_error < NEGLIGIBLE * self.allowed and not is_hidden:
             return 0
         return SWEEPS
 
@@ -174,10 +173,8 @@ class Resolution:
     @cached_property
     def _look(self) -> FinerShift:
         """Change by missing modes."""
-        finer = {}
-        for name, discretisation in self.preview.model.discretisation.items():
-            finer[name] = self._looked_at(discretisation)
-        return self.preview.finer_shift(finer, self._sweeps)
+        grids = self.preview.model.discretisation
+        return self.preview.finer_shift({name: self._looked_at(own) for name, own in grids.items()}, self._sweeps)
 
     def _looked_at(self, discretisation: Discretisation) -> Discretisation:
         """The finer discretisation of a rod for the look."""
@@ -186,8 +183,7 @@ class Resolution:
             modes = tuple(WAVES_FACTOR * m for m in discretisation.modes)
             return replace(discretisation, modes=modes, nodes=WAVES_FACTOR * discretisation.nodes)
         modes = tuple(max(m + FURTHER_MODES, self._product_modes) for m in discretisation.modes)
-        nodes = max(discretisation.nodes, self._product_modes) + FURTHER_MODES
-        return replace(discretisation, modes=modes, nodes=nodes)
+        return replace(discretisation, modes=modes, nodes=max(discretisation.nodes, *modes) + FURTHER_MODES)
 
     def _shift_without(self, count: int) -> float:
         """Largest change of the watched poses with ``count`` modes less in every component."""
@@ -196,7 +192,6 @@ class Resolution:
         fewer = {}
         for name, discretisation in self.preview.model.discretisation.items():
             # Every component keeps one mode, and none gains one.
-            kept = [max(min(m, least), m - count) for m in discretisation.modes]
-            fewer[name] = tuple(kept)
+            fewer[name] = tuple(max(min(m, least), m - count) for m in discretisation.modes)
         shift = self.preview.mode_shift(fewer)
         return change_size(shift)
