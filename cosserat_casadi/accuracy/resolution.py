@@ -21,8 +21,9 @@ import numpy as np
 
 from cosserat_casadi.accuracy.preview import FinerShift, Preview
 from cosserat_casadi.equilibrium.answer_error import SLOWEST
+from cosserat_casadi.equilibrium.metrics import largest_turn
 from cosserat_casadi.maths.pose_change import change_size
-from cosserat_casadi.model.required_modes import WAVES_FACTOR
+from cosserat_casadi.model.required_modes import WAVES_FACTOR, modes_for_turn
 from cosserat_casadi.rod.discretisation import Discretisation
 
 MODES_SAFETY = 2.0
@@ -153,10 +154,16 @@ class Resolution:
         """Sweeps of the look; 0 if the tips need none."""
         if self.waves or self.preview.model.scene.supports:
             return LOADED_SWEEPS
-        # A layer presses a part of an element, which few modes do not resolve at all.
-        if self.extrapolated_error < NEGLIGIBLE * self.allowed and not self.preview.model.discrete.pressed_rods:
+        # A layer presses a part of an element, and products of waves are short: few modes do not show these at all.
+        is_hidden = self._product_modes or self.preview.model.discrete.pressed_rods
+        if self.extrapolated_error < NEGLIGIBLE * self.allowed and not is_hidden:
             return 0
         return SWEEPS
+
+    @cached_property
+    def _product_modes(self) -> int:
+        """Modes that show products of waves along an element that turns more than once; 0 without such an element."""
+        return WAVES_FACTOR * modes_for_turn(largest_turn(self.preview.reference))
 
     @cached_property
     def _beyond(self) -> float:
@@ -166,10 +173,8 @@ class Resolution:
     @cached_property
     def _look(self) -> FinerShift:
         """Change by missing modes."""
-        finer = {}
-        for name, discretisation in self.preview.model.discretisation.items():
-            finer[name] = self._looked_at(discretisation)
-        return self.preview.finer_shift(finer, self._sweeps)
+        grids = self.preview.model.discretisation
+        return self.preview.finer_shift({name: self._looked_at(own) for name, own in grids.items()}, self._sweeps)
 
     def _looked_at(self, discretisation: Discretisation) -> Discretisation:
         """The finer discretisation of a rod for the look."""
@@ -177,8 +182,8 @@ class Resolution:
             # Products of waves have twice their frequency.
             modes = tuple(WAVES_FACTOR * m for m in discretisation.modes)
             return replace(discretisation, modes=modes, nodes=WAVES_FACTOR * discretisation.nodes)
-        modes = tuple(m + FURTHER_MODES for m in discretisation.modes)
-        return replace(discretisation, modes=modes, nodes=discretisation.nodes + FURTHER_MODES)
+        modes = tuple(max(m + FURTHER_MODES, self._product_modes) for m in discretisation.modes)
+        return replace(discretisation, modes=modes, nodes=max(discretisation.nodes, *modes) + FURTHER_MODES)
 
     def _shift_without(self, count: int) -> float:
         """Largest change of the watched poses with ``count`` modes less in every component."""
@@ -187,7 +192,6 @@ class Resolution:
         fewer = {}
         for name, discretisation in self.preview.model.discretisation.items():
             # Every component keeps one mode, and none gains one.
-            kept = [max(min(m, least), m - count) for m in discretisation.modes]
-            fewer[name] = tuple(kept)
+            fewer[name] = tuple(max(min(m, least), m - count) for m in discretisation.modes)
         shift = self.preview.mode_shift(fewer)
         return change_size(shift)

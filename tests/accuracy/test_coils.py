@@ -22,7 +22,9 @@ from cosserat_casadi import (
     solve,
 )
 from cosserat_casadi.accuracy.levels import SPARE_NODES, nodes_for_turn, verified_nodes
+from cosserat_casadi.accuracy.preview import Preview
 from cosserat_casadi.accuracy.refine import FINER_MODES
+from cosserat_casadi.accuracy.resolution import Resolution
 from cosserat_casadi.control.inverse_levels import LevelsOfRods
 from cosserat_casadi.equilibrium.blindness import TurnedElements
 from cosserat_casadi.equilibrium.metrics import largest_turn, pose_distance
@@ -70,6 +72,16 @@ def true_error(solution: Solution) -> float:
     reference = solve(fine, solution.inputs, estimate_error=False)
     assert reference.converged
     return pose_distance(solution, reference)
+
+
+@pytest.mark.parametrize("modes", [25, 27])
+def test_a_reference_tells_products_of_waves(modes: int) -> None:
+    """The last modes tell 55 times too little of products of waves, which are shorter, and four more modes not all."""
+    spring = drawn(5, [0.0, 0.0, 1.0], 1e-7)
+    solution = solve(build(spring, discretise(spring, modes, 100, "magnus8")), estimate_error=False)
+    true = true_error(solution)
+    told = Resolution(Preview(solution), allowed=1e-7).modes_error
+    assert 1e-8 < true < told < 2 * true
 
 
 def test_turns_of_a_rolled_rod_are_those_unloaded_and_those_by_its_moment() -> None:
