@@ -364,7 +364,9 @@ inputs = ["push.force", "cable.tension"]
         if not any(rod.base.free for rod in self.rods):
             return self
         rods = tuple(rod.model_copy(update={"base": rod.base.held()}) for rod in self.rods)
-        return self.model_copy(update={"rods": rods})
+        # Held bases have no initial velocities, so that the scene is one that can be read.
+        velocities = tuple(velocity for velocity in self.velocities if velocity.rod is None)
+        return self.model_copy(update={"rods": rods, "velocities": velocities})
 
     def of_equations(self) -> Scene:
         """The scene without the keys that do not enter the equations: title, motions, rates of rods, times.
