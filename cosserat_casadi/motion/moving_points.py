@@ -6,13 +6,15 @@ its base, as far as these are unknowns.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
+from itertools import pairwise, starmap
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi.compiling.shared_records import Held
+from cosserat_casadi.maths.calls import KEPT
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.floating_frames import FrameName
@@ -31,6 +33,7 @@ class MovingPoints:
         libraries: shared objects that contain :attr:`in_iterations` and :attr:`in_derivatives`.
         shares: energy unit of forces on the points over the unit of each balance, shape (n,); None if both are equal
             for all unknowns that move the points.
+        parts: the points of each rod, if they are of several; steps in C share the code of a rod among its pairs.
     """
 
     def __init__(
@@ -40,6 +43,7 @@ class MovingPoints:
         name: str,
         libraries: Libraries = INTERPRETED,
         shares: FloatArray | None = None,
+        parts: Sequence[MovingPoints] = (),
     ) -> None:
         x = ca.MX.sym("x", model.size)
         inputs = ca.MX.sym("inputs", stacked_size(model))
@@ -52,6 +56,7 @@ class MovingPoints:
         self._written = (positions, total, gradient)
         self._name = name
         self._libraries = libraries
+        self._parts = parts
         self.shares = shares
 
     def in_balances(self, by_unknowns: FloatArray) -> FloatArray:
@@ -124,6 +129,8 @@ class MovingPoints:
         rate); second derivatives of the sum as :attr:`in_derivatives`; and, where inputs move the points, derivatives
         of the sum and of its derivative with the inputs.
         """
+        if self._parts:
+            return self._from_parts()
         positions, gradient = self.in_iterations
         _, hessian = self.in_derivatives
         functions = {
@@ -138,6 +145,34 @@ class MovingPoints:
             results = [ca.densify(ca.gradient(total, inputs)), ca.densify(ca.jacobian(by_x, inputs))]
             functions["by_inputs"] = ca.Function("by_inputs", self._symbols, results)
         return functions
+
+    def _from_parts(self) -> dict[str, ca.Function]:
+        """Functions that steps in C call, which call those of the parts: generated code has each of these once."""
+        x, inputs, weights = self._symbols
+        rates = [ca.MX.sym("v", *x.shape), ca.MX.sym("rate", *inputs.shape)]
+        stacked: dict[str, list[ca.MX]] = {"positions": [], "velocities": rates}
+        ends = np.cumsum([0, *[3 * part.count for part in self._parts]]).tolist()
+        functions = {}
+        for word in dict.fromkeys(word for part in self._parts for word in part.in_steps):
+            # Positions and velocities of the parts are stacked; derivatives of sums of weighted positions add up.
+            further = stacked.get(word, [weights])
+            of_parts = []
+            for part, own in zip(self._parts, ca.vertsplit(weights, ends), strict=True):
+                if word in part.in_steps:
+                    routine = part._routine(word)
+                    of_parts.append(routine.call([x, inputs, *stacked.get(word, [own])]))
+            whole = [
+                ca.vertcat(*each) if word in stacked else sum(each[1:], each[0])
+                for each in zip(*of_parts, strict=True)
+            ]
+            functions[word] = ca.Function(f"{self._name}_{word}", [x, inputs, *further], whole)
+        return functions
+
+    def _routine(self, word: str) -> ca.Function:
+        """The function of this name of :attr:`in_steps` as a routine."""
+        plain = self.in_steps[word]
+        symbols = plain.mx_in()
+        return ca.Function(f"{self._name}_{word}", symbols, plain.call(symbols), KEPT)
 
     @cached_property
     def _positions(self) -> RepeatedCall:
@@ -245,7 +280,7 @@ def nodes_of_both(model: Model, rods: tuple[str, str], libraries: Libraries = IN
     def placed(system: System) -> Matrix:
         return ca.horzcat(*[system.nodes(rod) for rod in rods])
 
-    return MovingPoints(model, placed, name, libraries, shares)
+    return MovingPoints(model, placed, name, libraries, shares, [nodes_of(model, rod, libraries) for rod in rods])
 
 
 def centre_of(model: Model, body: str, libraries: Libraries = INTERPRETED) -> MovingPoints:

@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import casadi as ca
 
@@ -145,10 +146,22 @@ class SurfaceSliding:
     @cached_property
     def function(self) -> ca.Function:
         """(x, inputs, v, rate, section, axis) ↦ velocity, 2×1; gradients by v, n×2; direction of the rod, 2×1."""
-        x, _, _, _, section, axis = self._symbols
+        x, inputs, v, rate, section, axis = self._symbols
         abscissae = section[self.facing.points.count :]
-        sliding, along = self._law(self._poses, self._rates, abscissae, axis)
-        by_v = ca.jtimes(self._poses, x, self._tangents(self._poses, abscissae, axis), True)
+        poses, rates = self._poses, self._rates
+        if len(self._sides) == 1:
+            by_v = ca.jtimes(poses, x, self._tangents(poses, abscissae, axis), True)
+        else:
+            # Generated code calls one routine for the section of a rod, in each pair that the rod is in.
+            moved = [_moved(*own)(x, inputs, v, rate, section[own[1]]) for own in self._sides]
+            poses, rates = (ca.vertcat(*parts) for parts in zip(*moved, strict=True))
+            forces = ca.vertsplit(self._tangents(poses, abscissae, axis), 12)
+            pulls = [
+                _pulled(*own)(x, inputs, section[own[1]], of_section)
+                for own, of_section in zip(self._sides, forces, strict=True)
+            ]
+            by_v = pulls[0] + pulls[1]
+        sliding, along = self._law(poses, rates, abscissae, axis)
         return ca.Function("rubbing", self._symbols, [ca.densify(part) for part in (sliding, by_v, along)])
 
     @cached_property
@@ -176,7 +189,6 @@ class SurfaceSliding:
             parts = [_section_derivatives(poses, rates, x, inputs, section, change, held, along)]
         else:
             parts = []
-            # Generated code calls one routine for the section of a rod, in each pair that the rod is in.
             for number, (side, span) in enumerate(self._sides):
                 entries = slice(12 * number, 12 * number + 12)
                 arguments = [x, inputs, v, rate, section[span], change[span, :], held[entries], along[entries, :]]
@@ -251,6 +263,52 @@ def _material_arm(rotation: Matrix, arm: Matrix) -> Matrix:
     return ca.vertcat(*(ca.dot(one, arm) for one in across)) / ca.dot(across[0], first)
 
 
+class _Section(NamedTuple):
+    """The pose of a section of a rod, 12×1, and its rates, as expressions of the other attributes, which are symbols.
+
+    Attributes:
+        number: number of the rod.
+        weights: weights of the nodes of the rod.
+    """
+
+    number: int
+    x: ca.MX
+    inputs: ca.MX
+    v: ca.MX
+    rate: ca.MX
+    weights: ca.MX
+    pose: Matrix
+    rates: Matrix
+
+
+def _section(side: Facing, nodes: slice) -> _Section:
+    """Write the section of a rod, with weights at this place in the section of a pair."""
+    model = side.model
+    sizes = {"x": model.size, "inputs": stacked_size(model)}
+    x, inputs = (ca.MX.sym(word, size) for word, size in sizes.items())
+    v, rate = (ca.MX.sym(f"{word}_rate", size) for word, size in sizes.items())
+    weights = ca.MX.sym("weights", nodes.stop - nodes.start)
+    pose = ca.vertcat(*in_stacked_inputs(model, x, inputs, lambda system: [_pose(side, system, weights)]))
+    rates = ca.jtimes(pose, x, v) + ca.jtimes(pose, inputs, rate)
+    number = [rod.name for rod in model.scene.rods].index(side.owner)
+    return _Section(number, x, inputs, v, rate, weights, pose, rates)
+
+
+def _moved(side: Facing, nodes: slice) -> ca.Function:
+    """(x, inputs, v, rate, weights of nodes) ↦ the pose of a section of a rod, and its rates, 12×1 each."""
+    own = _section(side, nodes)
+    results = [ca.densify(own.pose), ca.densify(own.rates)]
+    return ca.Function(f"moved_section_of_{own.number}", own[1:6], results, KEPT)
+
+
+def _pulled(side: Facing, nodes: slice) -> ca.Function:
+    """(x, inputs, weights of nodes, forces on the pose, 12×2) ↦ generalised forces, n×2."""
+    own = _section(side, nodes)
+    forces = ca.MX.sym("forces", 12, 2)
+    pulls = ca.densify(ca.jtimes(own.pose, own.x, forces, True))
+    return ca.Function(f"pulled_section_of_{own.number}", [own.x, own.inputs, own.weights, forces], [pulls], KEPT)
+
+
 def _routine(side: Facing, nodes: slice, shifts: int) -> ca.Function:
     """(x, inputs, v, rate, weights of nodes, their changes, forces, tangents) ↦ derivatives of a rod's section.
 
@@ -259,19 +317,10 @@ def _routine(side: Facing, nodes: slice, shifts: int) -> ca.Function:
         nodes: place of the weights in the section of a pair.
         shifts: number of changes.
     """
-    model = side.model
-    sizes = {"x": model.size, "inputs": stacked_size(model)}
-    x, inputs = (ca.MX.sym(word, size) for word, size in sizes.items())
-    v, rate = (ca.MX.sym(f"{word}_rate", size) for word, size in sizes.items())
-    count = nodes.stop - nodes.start
-    weights, change = ca.MX.sym("weights", count), ca.MX.sym("change", count, shifts)
-    forces, tangents = ca.MX.sym("forces", 12), ca.MX.sym("tangents", 12, 2)
-    pose = ca.vertcat(*in_stacked_inputs(model, x, inputs, lambda system: [_pose(side, system, weights)]))
-    rates = ca.jtimes(pose, x, v) + ca.jtimes(pose, inputs, rate)
-    results = _section_derivatives(pose, rates, x, inputs, weights, change, forces, tangents)
-    name = f"section_of_{[rod.name for rod in model.scene.rods].index(side.owner)}"
-    arguments = [x, inputs, v, rate, weights, change, forces, tangents]
-    return ca.Function(name, arguments, [ca.densify(result) for result in results], KEPT)
+    own = _section(side, nodes)
+    held = [ca.MX.sym("change", own.weights.shape[0], shifts), ca.MX.sym("forces", 12), ca.MX.sym("tangents", 12, 2)]
+    results = _section_derivatives(own.pose, own.rates, own.x, own.inputs, own.weights, *held)
+    return ca.Function(f"section_of_{own.number}", [*own[1:6], *held], [ca.densify(result) for result in results], KEPT)
 
 
 def _section_derivatives(
