@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
-from itertools import pairwise, starmap
 
 import casadi as ca
 import numpy as np
@@ -149,30 +148,23 @@ class MovingPoints:
     def _from_parts(self) -> dict[str, ca.Function]:
         """Functions that steps in C call, which call those of the parts: generated code has each of these once."""
         x, inputs, weights = self._symbols
-        rates = [ca.MX.sym("v", *x.shape), ca.MX.sym("rate", *inputs.shape)]
-        stacked: dict[str, list[ca.MX]] = {"positions": [], "velocities": rates}
+        stacked = {"positions": [], "velocities": [ca.MX.sym("v", *x.shape), ca.MX.sym("rate", *inputs.shape)]}
         ends = np.cumsum([0, *[3 * part.count for part in self._parts]]).tolist()
         functions = {}
         for word in dict.fromkeys(word for part in self._parts for word in part.in_steps):
-            # Positions and velocities of the parts are stacked; derivatives of sums of weighted positions add up.
-            further = stacked.get(word, [weights])
-            of_parts = []
+            results = []
             for part, own in zip(self._parts, ca.vertsplit(weights, ends), strict=True):
                 if word in part.in_steps:
-                    routine = part._routine(word)
-                    of_parts.append(routine.call([x, inputs, *stacked.get(word, [own])]))
-            whole = [
-                ca.vertcat(*each) if word in stacked else sum(each[1:], each[0])
-                for each in zip(*of_parts, strict=True)
-            ]
-            functions[word] = ca.Function(f"{self._name}_{word}", [x, inputs, *further], whole)
+                    plain = part.in_steps[word]
+                    symbols = plain.mx_in()
+                    routine = ca.Function(f"{part._name}_{word}", symbols, plain.call(symbols), KEPT)
+                    results.append(routine.call([x, inputs, *stacked.get(word, [own])]))
+            # Derivatives of sums of weighted positions add up.
+            of_results = zip(*results, strict=True)
+            whole = [ca.vertcat(*each) if word in stacked else sum(each) for each in of_results]
+            symbols = [x, inputs, *stacked.get(word, [weights])]
+            functions[word] = ca.Function(f"{self._name}_{word}", symbols, whole)
         return functions
-
-    def _routine(self, word: str) -> ca.Function:
-        """The function of this name of :attr:`in_steps` as a routine."""
-        plain = self.in_steps[word]
-        symbols = plain.mx_in()
-        return ca.Function(f"{self._name}_{word}", symbols, plain.call(symbols), KEPT)
 
     @cached_property
     def _positions(self) -> RepeatedCall:

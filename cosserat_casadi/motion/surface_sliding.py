@@ -14,7 +14,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import casadi as ca
 
@@ -156,11 +155,8 @@ class SurfaceSliding:
             moved = [_moved(*own)(x, inputs, v, rate, section[own[1]]) for own in self._sides]
             poses, rates = (ca.vertcat(*parts) for parts in zip(*moved, strict=True))
             forces = ca.vertsplit(self._tangents(poses, abscissae, axis), 12)
-            pulls = [
-                _pulled(*own)(x, inputs, section[own[1]], of_section)
-                for own, of_section in zip(self._sides, forces, strict=True)
-            ]
-            by_v = pulls[0] + pulls[1]
+            sides = zip(self._sides, forces, strict=True)
+            by_v = sum(_pulled(*own)(x, inputs, section[own[1]], held) for own, held in sides)
         sliding, along = self._law(poses, rates, abscissae, axis)
         return ca.Function("rubbing", self._symbols, [ca.densify(part) for part in (sliding, by_v, along)])
 
@@ -192,7 +188,7 @@ class SurfaceSliding:
             for number, (side, span) in enumerate(self._sides):
                 entries = slice(12 * number, 12 * number + 12)
                 arguments = [x, inputs, v, rate, section[span], change[span, :], held[entries], along[entries, :]]
-                parts.append(_routine(side, span, len(self._sides)).call(arguments))
+                parts.append(_routine(side, span).call(arguments))
         of_pose, of_sums = [part[:3] for part in parts], [part[3:] for part in parts]
         by_x, by_inputs, shifted = (ca.vertcat(*blocks) for blocks in zip(*of_pose, strict=True))
         rates_by_x, force_by_x, rates_shifted, force_shifted, rates_by_inputs, force_by_inputs = (
@@ -263,64 +259,39 @@ def _material_arm(rotation: Matrix, arm: Matrix) -> Matrix:
     return ca.vertcat(*(ca.dot(one, arm) for one in across)) / ca.dot(across[0], first)
 
 
-class _Section(NamedTuple):
-    """The pose of a section of a rod, 12×1, and its rates, as expressions of the other attributes, which are symbols.
-
-    Attributes:
-        number: number of the rod.
-        weights: weights of the nodes of the rod.
-    """
-
-    number: int
-    x: ca.MX
-    inputs: ca.MX
-    v: ca.MX
-    rate: ca.MX
-    weights: ca.MX
-    pose: Matrix
-    rates: Matrix
-
-
-def _section(side: Facing, nodes: slice) -> _Section:
-    """Write the section of a rod, with weights at this place in the section of a pair."""
+def _section(side: Facing, nodes: slice) -> tuple[int, list[ca.MX], Matrix, Matrix]:
+    """Number of a rod; x, inputs, their rates, weights of its nodes; the pose of its section, 12×1, and its rates."""
     model = side.model
-    sizes = {"x": model.size, "inputs": stacked_size(model)}
-    x, inputs = (ca.MX.sym(word, size) for word, size in sizes.items())
-    v, rate = (ca.MX.sym(f"{word}_rate", size) for word, size in sizes.items())
-    weights = ca.MX.sym("weights", nodes.stop - nodes.start)
+    count = stacked_size(model)
+    sizes = {"x": model.size, "inputs": count, "v": model.size, "rate": count, "weights": nodes.stop - nodes.start}
+    symbols = [ca.MX.sym(word, size) for word, size in sizes.items()]
+    x, inputs, v, rate, weights = symbols
     pose = ca.vertcat(*in_stacked_inputs(model, x, inputs, lambda system: [_pose(side, system, weights)]))
     rates = ca.jtimes(pose, x, v) + ca.jtimes(pose, inputs, rate)
-    number = [rod.name for rod in model.scene.rods].index(side.owner)
-    return _Section(number, x, inputs, v, rate, weights, pose, rates)
+    return [rod.name for rod in model.scene.rods].index(side.owner), symbols, pose, rates
 
 
 def _moved(side: Facing, nodes: slice) -> ca.Function:
     """(x, inputs, v, rate, weights of nodes) ↦ the pose of a section of a rod, and its rates, 12×1 each."""
-    own = _section(side, nodes)
-    results = [ca.densify(own.pose), ca.densify(own.rates)]
-    return ca.Function(f"moved_section_of_{own.number}", own[1:6], results, KEPT)
+    number, symbols, pose, rates = _section(side, nodes)
+    return ca.Function(f"moved_section_of_{number}", symbols, [ca.densify(pose), ca.densify(rates)], KEPT)
 
 
 def _pulled(side: Facing, nodes: slice) -> ca.Function:
     """(x, inputs, weights of nodes, forces on the pose, 12×2) ↦ generalised forces, n×2."""
-    own = _section(side, nodes)
+    number, (x, inputs, _, _, weights), pose, _ = _section(side, nodes)
     forces = ca.MX.sym("forces", 12, 2)
-    pulls = ca.densify(ca.jtimes(own.pose, own.x, forces, True))
-    return ca.Function(f"pulled_section_of_{own.number}", [own.x, own.inputs, own.weights, forces], [pulls], KEPT)
+    pulls = ca.densify(ca.jtimes(pose, x, forces, True))
+    return ca.Function(f"pulled_section_of_{number}", [x, inputs, weights, forces], [pulls], KEPT)
 
 
-def _routine(side: Facing, nodes: slice, shifts: int) -> ca.Function:
-    """(x, inputs, v, rate, weights of nodes, their changes, forces, tangents) ↦ derivatives of a rod's section.
-
-    Args:
-        side: the rod.
-        nodes: place of the weights in the section of a pair.
-        shifts: number of changes.
-    """
-    own = _section(side, nodes)
-    held = [ca.MX.sym("change", own.weights.shape[0], shifts), ca.MX.sym("forces", 12), ca.MX.sym("tangents", 12, 2)]
-    results = _section_derivatives(own.pose, own.rates, own.x, own.inputs, own.weights, *held)
-    return ca.Function(f"section_of_{own.number}", [*own[1:6], *held], [ca.densify(result) for result in results], KEPT)
+def _routine(side: Facing, nodes: slice) -> ca.Function:
+    """(x, inputs, v, rate, weights of nodes, their changes, forces, tangents) ↦ derivatives of a rod's section."""
+    number, symbols, pose, rates = _section(side, nodes)
+    x, inputs, _, _, weights = symbols
+    held = [ca.MX.sym("change", weights.shape[0], 2), ca.MX.sym("forces", 12), ca.MX.sym("tangents", 12, 2)]
+    results = _section_derivatives(pose, rates, x, inputs, weights, *held)
+    return ca.Function(f"section_of_{number}", [*symbols, *held], [ca.densify(result) for result in results], KEPT)
 
 
 def _section_derivatives(

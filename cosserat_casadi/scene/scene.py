@@ -360,11 +360,10 @@ inputs = ["push.force", "cable.tension"]
         return self.model_copy(update={"inputs": (*free, *further)})
 
     def held(self) -> Scene:
-        """The scene with free bases clamped at their initial poses, as at the beginning of a motion."""
+        """The scene with free bases clamped at their initial poses, as where a motion begins, but without velocities."""
         if not any(rod.base.free for rod in self.rods):
             return self
         rods = tuple(rod.model_copy(update={"base": rod.base.held()}) for rod in self.rods)
-        # Held bases have no initial velocities, so that the scene is one that can be read.
         velocities = tuple(velocity for velocity in self.velocities if velocity.rod is None)
         return self.model_copy(update={"rods": rods, "velocities": velocities})
 

@@ -98,8 +98,8 @@ def test_modes_of_motions_are_chosen_for_rods_that_touch(
 
     monkeypatch.setattr(export_command, "solve", known)
     folder = tmp_path / "c"
-    ranges = ["--range", "push.force.z=-3e-4:1e-4", "--samples", "1"]
-    done = CliRunner().invoke(app, ["export", str(tmp_path / "rods.toml"), "--output", str(folder), "--dynamics", *ranges])
+    words = ["--output", str(folder), "--dynamics", "--range", "push.force.z=-3e-4:1e-4", "--samples", "1"]
+    done = CliRunner().invoke(app, ["export", str(tmp_path / "rods.toml"), *words])
     assert done.exit_code == 0, done.output
     assert [bool(scene.rod_contacts) for scene in solved] == ([True] if found else [True, False])
     assert (export_command.APART in " ".join(done.output.split())) is not found

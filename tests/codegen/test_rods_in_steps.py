@@ -116,7 +116,9 @@ def test_functions_of_pairs_are_those_of_both_rods() -> None:
             found = function.call([x, inputs, *further.get(word, [weights])])[0]
             assert_allclose(found.full().ravel(), np.ravel(wanted[word]), rtol=1e-12, atol=1e-13)
             names |= {each.name() for each in functions_within(function) if is_routine(each)}
-    assert names == {f"rod_{k}_{word}" for k in range(3) for word in wanted} - {"rod_0_by_inputs", "rod_1_by_inputs"}
+    # A base that moves without turning moves all points alike, which is no routine.
+    assert names == {f"rod_{k}_{word}" for k in range(3) for word in wanted if word != "by_inputs"}
+    assert "by_inputs" in functions
 
 
 def test_power_of_friction_is_the_force_along_the_velocity() -> None:
