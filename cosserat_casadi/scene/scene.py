@@ -360,7 +360,7 @@ inputs = ["push.force", "cable.tension"]
         return self.model_copy(update={"inputs": (*free, *further)})
 
     def held(self) -> Scene:
-        """The scene with free bases clamped at their initial poses, as where a motion begins, but without velocities."""
+        """The scene with free bases clamped at their initial poses, where a motion begins, without velocities."""
         if not any(rod.base.free for rod in self.rods):
             return self
         rods = tuple(rod.model_copy(update={"base": rod.base.held()}) for rod in self.rods)
