@@ -279,7 +279,7 @@ class CommonModes:
 
     def _unloaded(self, number: int, model: Model) -> Start:
         """The unloaded scene as a start; given as unknowns, so that rods that snap along the path do not relax."""
-        if number == 0 or self.settles or not has_barriers(model.scene):
+        if number == 0 or self.settles or model.scene.touches_exactly or not has_barriers(model.scene):
             return None
         return np.zeros(model.size)
 

@@ -444,6 +444,9 @@ def _with_operands(code: int, node: ca.MX, operands: Sequence[ca.MX]) -> ca.MX:
     if code in REDUCTIONS:
         result = REDUCTIONS[code](*operands)
         return result
+    if code == ca.OP_HORZREPSUM:
+        result = ca.repsum(operands[0], 1, operands[0].shape[1] // node.shape[1])
+        return result
     before = [node.dep(i) for i in range(node.n_dep())]
     if any(operand.is_output() for operand in before):
         raise UnknownInstructionError

@@ -6,13 +6,14 @@ its base, as far as these are unknowns.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi.compiling.shared_records import Held
+from cosserat_casadi.maths.calls import KEPT
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.floating_frames import FrameName
@@ -31,6 +32,7 @@ class MovingPoints:
         libraries: shared objects that contain :attr:`in_iterations` and :attr:`in_derivatives`.
         shares: energy unit of forces on the points over the unit of each balance, shape (n,); None if both are equal
             for all unknowns that move the points.
+        parts: the points of each rod, if they are of several; steps in C share the code of a rod among its pairs.
     """
 
     def __init__(
@@ -40,6 +42,7 @@ class MovingPoints:
         name: str,
         libraries: Libraries = INTERPRETED,
         shares: FloatArray | None = None,
+        parts: Sequence[MovingPoints] = (),
     ) -> None:
         x = ca.MX.sym("x", model.size)
         inputs = ca.MX.sym("inputs", stacked_size(model))
@@ -52,6 +55,7 @@ class MovingPoints:
         self._written = (positions, total, gradient)
         self._name = name
         self._libraries = libraries
+        self._parts = parts
         self.shares = shares
 
     def in_balances(self, by_unknowns: FloatArray) -> FloatArray:
@@ -124,6 +128,8 @@ class MovingPoints:
         rate); second derivatives of the sum as :attr:`in_derivatives`; and, where inputs move the points, derivatives
         of the sum and of its derivative with the inputs.
         """
+        if self._parts:
+            return self._from_parts()
         positions, gradient = self.in_iterations
         _, hessian = self.in_derivatives
         functions = {
@@ -137,6 +143,27 @@ class MovingPoints:
         if ca.jacobian_sparsity(written, inputs).nnz():
             results = [ca.densify(ca.gradient(total, inputs)), ca.densify(ca.jacobian(by_x, inputs))]
             functions["by_inputs"] = ca.Function("by_inputs", self._symbols, results)
+        return functions
+
+    def _from_parts(self) -> dict[str, ca.Function]:
+        """Functions that steps in C call, which call those of the parts: generated code has each of these once."""
+        x, inputs, weights = self._symbols
+        stacked = {"positions": [], "velocities": [ca.MX.sym("v", *x.shape), ca.MX.sym("rate", *inputs.shape)]}
+        ends = np.cumsum([0, *[3 * part.count for part in self._parts]]).tolist()
+        functions = {}
+        for word in dict.fromkeys(word for part in self._parts for word in part.in_steps):
+            results = []
+            for part, own in zip(self._parts, ca.vertsplit(weights, ends), strict=True):
+                if word in part.in_steps:
+                    plain = part.in_steps[word]
+                    symbols = plain.mx_in()
+                    routine = ca.Function(f"{part._name}_{word}", symbols, plain.call(symbols), KEPT)
+                    results.append(routine.call([x, inputs, *stacked.get(word, [own])]))
+            # Derivatives of sums of weighted positions add up.
+            of_results = zip(*results, strict=True)
+            whole = [ca.vertcat(*each) if word in stacked else sum(each) for each in of_results]
+            symbols = [x, inputs, *stacked.get(word, [weights])]
+            functions[word] = ca.Function(f"{self._name}_{word}", symbols, whole)
         return functions
 
     @cached_property
@@ -245,7 +272,7 @@ def nodes_of_both(model: Model, rods: tuple[str, str], libraries: Libraries = IN
     def placed(system: System) -> Matrix:
         return ca.horzcat(*[system.nodes(rod) for rod in rods])
 
-    return MovingPoints(model, placed, name, libraries, shares)
+    return MovingPoints(model, placed, name, libraries, shares, [nodes_of(model, rod, libraries) for rod in rods])
 
 
 def centre_of(model: Model, body: str, libraries: Libraries = INTERPRETED) -> MovingPoints:

@@ -145,10 +145,19 @@ class SurfaceSliding:
     @cached_property
     def function(self) -> ca.Function:
         """(x, inputs, v, rate, section, axis) ↦ velocity, 2×1; gradients by v, n×2; direction of the rod, 2×1."""
-        x, _, _, _, section, axis = self._symbols
+        x, inputs, v, rate, section, axis = self._symbols
         abscissae = section[self.facing.points.count :]
-        sliding, along = self._law(self._poses, self._rates, abscissae, axis)
-        by_v = ca.jtimes(self._poses, x, self._tangents(self._poses, abscissae, axis), True)
+        poses, rates = self._poses, self._rates
+        if len(self._sides) == 1:
+            by_v = ca.jtimes(poses, x, self._tangents(poses, abscissae, axis), True)
+        else:
+            # Generated code calls one routine for the section of a rod, in each pair that the rod is in.
+            moved = [_moved(*own)(x, inputs, v, rate, section[own[1]]) for own in self._sides]
+            poses, rates = (ca.vertcat(*parts) for parts in zip(*moved, strict=True))
+            forces = ca.vertsplit(self._tangents(poses, abscissae, axis), 12)
+            sides = zip(self._sides, forces, strict=True)
+            by_v = sum(_pulled(*own)(x, inputs, section[own[1]], held) for own, held in sides)
+        sliding, along = self._law(poses, rates, abscissae, axis)
         return ca.Function("rubbing", self._symbols, [ca.densify(part) for part in (sliding, by_v, along)])
 
     @cached_property
@@ -176,11 +185,10 @@ class SurfaceSliding:
             parts = [_section_derivatives(poses, rates, x, inputs, section, change, held, along)]
         else:
             parts = []
-            # Generated code calls one routine for the section of a rod, in each pair that the rod is in.
             for number, (side, span) in enumerate(self._sides):
                 entries = slice(12 * number, 12 * number + 12)
                 arguments = [x, inputs, v, rate, section[span], change[span, :], held[entries], along[entries, :]]
-                parts.append(_routine(side, span, len(self._sides)).call(arguments))
+                parts.append(_routine(side, span).call(arguments))
         of_pose, of_sums = [part[:3] for part in parts], [part[3:] for part in parts]
         by_x, by_inputs, shifted = (ca.vertcat(*blocks) for blocks in zip(*of_pose, strict=True))
         rates_by_x, force_by_x, rates_shifted, force_shifted, rates_by_inputs, force_by_inputs = (
@@ -251,27 +259,39 @@ def _material_arm(rotation: Matrix, arm: Matrix) -> Matrix:
     return ca.vertcat(*(ca.dot(one, arm) for one in across)) / ca.dot(across[0], first)
 
 
-def _routine(side: Facing, nodes: slice, shifts: int) -> ca.Function:
-    """(x, inputs, v, rate, weights of nodes, their changes, forces, tangents) ↦ derivatives of a rod's section.
-
-    Args:
-        side: the rod.
-        nodes: place of the weights in the section of a pair.
-        shifts: number of changes.
-    """
+def _section(side: Facing, nodes: slice) -> tuple[int, list[ca.MX], Matrix, Matrix]:
+    """Number of a rod; x, inputs, their rates, weights of its nodes; the pose of its section, 12×1, and its rates."""
     model = side.model
-    sizes = {"x": model.size, "inputs": stacked_size(model)}
-    x, inputs = (ca.MX.sym(word, size) for word, size in sizes.items())
-    v, rate = (ca.MX.sym(f"{word}_rate", size) for word, size in sizes.items())
-    count = nodes.stop - nodes.start
-    weights, change = ca.MX.sym("weights", count), ca.MX.sym("change", count, shifts)
-    forces, tangents = ca.MX.sym("forces", 12), ca.MX.sym("tangents", 12, 2)
+    count = stacked_size(model)
+    sizes = {"x": model.size, "inputs": count, "v": model.size, "rate": count, "weights": nodes.stop - nodes.start}
+    symbols = [ca.MX.sym(word, size) for word, size in sizes.items()]
+    x, inputs, v, rate, weights = symbols
     pose = ca.vertcat(*in_stacked_inputs(model, x, inputs, lambda system: [_pose(side, system, weights)]))
     rates = ca.jtimes(pose, x, v) + ca.jtimes(pose, inputs, rate)
-    results = _section_derivatives(pose, rates, x, inputs, weights, change, forces, tangents)
-    name = f"section_of_{[rod.name for rod in model.scene.rods].index(side.owner)}"
-    arguments = [x, inputs, v, rate, weights, change, forces, tangents]
-    return ca.Function(name, arguments, [ca.densify(result) for result in results], KEPT)
+    return [rod.name for rod in model.scene.rods].index(side.owner), symbols, pose, rates
+
+
+def _moved(side: Facing, nodes: slice) -> ca.Function:
+    """(x, inputs, v, rate, weights of nodes) ↦ the pose of a section of a rod, and its rates, 12×1 each."""
+    number, symbols, pose, rates = _section(side, nodes)
+    return ca.Function(f"moved_section_of_{number}", symbols, [ca.densify(pose), ca.densify(rates)], KEPT)
+
+
+def _pulled(side: Facing, nodes: slice) -> ca.Function:
+    """(x, inputs, weights of nodes, forces on the pose, 12×2) ↦ generalised forces, n×2."""
+    number, (x, inputs, _, _, weights), pose, _ = _section(side, nodes)
+    forces = ca.MX.sym("forces", 12, 2)
+    pulls = ca.densify(ca.jtimes(pose, x, forces, True))
+    return ca.Function(f"pulled_section_of_{number}", [x, inputs, weights, forces], [pulls], KEPT)
+
+
+def _routine(side: Facing, nodes: slice) -> ca.Function:
+    """(x, inputs, v, rate, weights of nodes, their changes, forces, tangents) ↦ derivatives of a rod's section."""
+    number, symbols, pose, rates = _section(side, nodes)
+    x, inputs, _, _, weights = symbols
+    held = [ca.MX.sym("change", weights.shape[0], 2), ca.MX.sym("forces", 12), ca.MX.sym("tangents", 12, 2)]
+    results = _section_derivatives(pose, rates, x, inputs, weights, *held)
+    return ca.Function(f"section_of_{number}", [*symbols, *held], [ca.densify(result) for result in results], KEPT)
 
 
 def _section_derivatives(

@@ -360,11 +360,12 @@ inputs = ["push.force", "cable.tension"]
         return self.model_copy(update={"inputs": (*free, *further)})
 
     def held(self) -> Scene:
-        """The scene with free bases clamped at their initial poses, as at the beginning of a motion."""
+        """The scene with free bases clamped at their initial poses, where a motion begins, without velocities."""
         if not any(rod.base.free for rod in self.rods):
             return self
         rods = tuple(rod.model_copy(update={"base": rod.base.held()}) for rod in self.rods)
-        return self.model_copy(update={"rods": rods})
+        velocities = tuple(velocity for velocity in self.velocities if velocity.rod is None)
+        return self.model_copy(update={"rods": rods, "velocities": velocities})
 
     def of_equations(self) -> Scene:
         """The scene without the keys that do not enter the equations: title, motions, rates of rods, times.

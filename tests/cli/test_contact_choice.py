@@ -9,15 +9,21 @@ from pathlib import Path
 
 import pytest
 from rich.console import Console
+from typer.testing import CliRunner
 
-from cosserat_casadi import read_scene, solve
+from cosserat_casadi import Model, Outcome, Scene, Solution, discretise, read_scene, scene_from_dict, solve
 from cosserat_casadi.accuracy.choose import Choice, choose
+from cosserat_casadi.accuracy.common_modes import Answers, CommonModes, LoadCase
 from cosserat_casadi.accuracy.fixing import with_accuracy
+from cosserat_casadi.cli.commands import export as export_command
+from cosserat_casadi.cli.main import app
 from cosserat_casadi.cli.reports.model import print_choice
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN
-from cosserat_casadi.scene.writing import scene_text
+from cosserat_casadi.scene.writing import scene_tables, scene_text
 from tests.codegen.contact_libraries import over_bar
 from tests.commands import cosserat
+from tests.contact.test_rods_that_rest_on_rods import BELOW, pressed
+from tests.motion.test_rods_that_strike_rods import free_rods
 from tests.scenes import push, scene
 
 RANGES = [word for text in ("x=-0.5:0.5", "y=-0.1:0.1", "z=-4:-2") for word in ("--range", f"push.force.{text}")]
@@ -50,6 +56,57 @@ def test_in_contact_no_point_is_solved_for_each_range_alone() -> None:
     choice = choose(few, {"push.force.x": (-0.5, 0.5), "push.force.z": (-4.0, -3.0)}, samples=1)
     # The scene's own inputs, a corner, both ends of all ranges together, a random point.
     assert choice.solves == 5
+
+
+def crossing() -> Scene:
+    """Two rods in planes on few modes: a force presses the upper one on the lower one."""
+    tables = pressed([0, 0, -3e-4], BELOW, accuracy={"modes": 2, "nodes": 4})
+    for own in tables["rods"]:
+        own["strain"] = ["bending_x", "bending_y"]
+    return scene_from_dict(tables | {"simulation": {"duration": 0.01, "start": "unloaded"}})
+
+
+def test_rods_that_touch_rods_start_unloaded_where_no_answer_is_near() -> None:
+    """A start by unknowns, as beside cushions, would name no contacts: it is refused."""
+    scene = crossing()
+    case = LoadCase(scene, {})
+    search = CommonModes([case, case], settles=False)
+    model = Answers(discretise(scene)).model_of(case)
+    assert search._unloaded(1, model) is None
+
+
+def test_a_held_scene_has_no_velocities_of_rods() -> None:
+    """It is a scene that can be read: modes of motions are chosen for it."""
+    held = scene_from_dict(free_rods()).held()
+    assert not held.velocities
+    assert scene_from_dict(scene_tables(held)) == held
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("found", [True, False], ids=["contact", "none found"])
+def test_modes_of_motions_are_chosen_for_rods_that_touch(
+    found: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In the equilibrium of the scene; where none is found they are chosen for rods apart, and a sentence says so."""
+    touching = crossing()
+    (tmp_path / "rods.toml").write_text(scene_text(touching))
+    solved: list[Scene] = []
+
+    def known(model: Model) -> Solution:
+        solved.append(model.scene)
+        end = solve(model)
+        return end if found or not model.scene.rod_contacts else replace(end, outcome=Outcome.CONTACT_UNSETTLED)
+
+    monkeypatch.setattr(export_command, "solve", known)
+    # The scene's own inputs are enough.
+    monkeypatch.setattr(export_command, "choose_with_progress", lambda scene, *_: choose(scene, cases=[{}]))
+    folder = tmp_path / "c"
+    words = ["--output", str(folder), "--dynamics"]
+    done = CliRunner().invoke(app, ["export", str(tmp_path / "rods.toml"), *words])
+    assert done.exit_code == 0, done.output
+    assert [bool(scene.rod_contacts) for scene in solved] == ([True] if found else [True, False])
+    assert (export_command.APART in " ".join(done.output.split())) is not found
+    assert read_scene(folder / "scene.toml").rod_contacts == touching.rod_contacts
 
 
 @pytest.mark.slow

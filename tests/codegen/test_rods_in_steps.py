@@ -11,10 +11,13 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import simulate
+from cosserat_casadi import build, scene_from_dict, simulate
 from cosserat_casadi.codegen.compiled_motion import StepState
 from cosserat_casadi.codegen.fmu import write_fmu
+from cosserat_casadi.maths.calls import functions_within, is_routine
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.facings import facings
+from cosserat_casadi.motion.surface_sliding import SurfaceSliding
 from tests.codegen.libraries import C99, gcc, run
 from tests.codegen.test_steps_in_contact import Moving, compare_with_differences
 from tests.motion.test_rods_that_strike_rods import RADIUS, free_rods, momentum, rod, scene
@@ -83,6 +86,54 @@ def test_steps_that_rub_are_the_simulators(tmp_path: Path) -> None:
     gcc(*C99, "-Werror", "-fsyntax-only", source)
     if shutil.which("g++") is not None:
         run("g++", "-x", "c++", "-std=c++20", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-fsyntax-only", source)
+
+
+def test_functions_of_pairs_are_those_of_both_rods() -> None:
+    """Each function of a pair calls one routine for each of its rods; an input moves the base of the third rod."""
+    tables = free_rods()
+    base = {"position": [0.1, -0.1, -0.03], "tangent": [0.6, 0.8, 0]}
+    third = tables["rods"][1] | {"name": "third", "base": base}
+    tables |= {"rods": [*tables["rods"], third], "inputs": ["third.base.position"]}
+    tables["rod_contacts"] = [{"exact": True, "friction": FRICTION}]
+    model = build(scene_from_dict(tables | {"accuracy": {"modes": 1, "nodes": 3}}), moving=True)
+    rng = np.random.default_rng(4)
+    x, v = (model.unloaded() + 0.05 * rng.normal(size=model.size) for _ in range(2))
+    inputs, rate = model.pack(), rng.normal(size=model.inputs.size)
+    names = set()
+    for facing in facings(model):
+        points, functions = facing.points, facing.points.in_steps
+        weights = rng.normal(size=3 * points.count)
+        moved, _ = points.straight_on(x, inputs, v, rate)
+        wanted = {
+            "positions": points.positions(x, inputs),
+            "velocities": moved,
+            "gradient": points.gradient(x, inputs, weights),
+            "hessian": points.hessian(x, inputs, weights),
+            "by_inputs": points.by_inputs(x, inputs, weights),
+        }
+        further = {"positions": [], "velocities": [v, rate]}
+        for word, function in functions.items():
+            found = function.call([x, inputs, *further.get(word, [weights])])[0]
+            assert_allclose(found.full().ravel(), np.ravel(wanted[word]), rtol=1e-12, atol=1e-13)
+            names |= {each.name() for each in functions_within(function) if is_routine(each)}
+    # A base that moves without turning moves all points alike, which is no routine.
+    assert names == {f"rod_{k}_{word}" for k in range(3) for word in wanted if word != "by_inputs"}
+    assert "by_inputs" in functions
+
+
+def test_power_of_friction_is_the_force_along_the_velocity() -> None:
+    """The gradients of the sliding by the rates, one routine, are those of the velocity, another one."""
+    model = build(scene_from_dict(pressed(FRICTION, 0.0) | {"accuracy": {"modes": 2, "nodes": 5}}), moving=True)
+    (facing,) = facings(model)
+    rng = np.random.default_rng(5)
+    x, v = 0.1 * rng.normal(size=(2, model.size))
+    inputs, rate = model.pack(), np.zeros(model.inputs.size)
+    # Velocities are linear in the rates for any weights of the nodes.
+    section = np.concatenate([rng.uniform(0.5, 1.0, facing.points.count) / facing.points.count, [0.4, 0.6]])
+    function = SurfaceSliding(facing).function
+    axis = np.array([1.0, 0.2, 0.1])
+    sliding, by_v, _ = function(x, inputs, v, rate, section, axis)
+    assert_allclose(by_v.full().T @ v, sliding.full().ravel(), rtol=1e-12, atol=0)
 
 
 @pytest.mark.slow

@@ -137,16 +137,20 @@ def test_touch_slide_and_lift_off(crossed: ContactLibrary) -> None:
 
 
 def test_no_step_leads_through_another_rod(small: ContactLibrary) -> None:
-    """A load that would take the rod to the other side at once, where nothing touches, ends in contact or is told."""
+    """A load that would take the rod to the other side at once, where nothing touches, ends in contact.
+
+    A turn of a control loop goes there in parts; with a budget for few of them it says so.
+    """
     far = small.loaded.solve(down(1e-5))
     assert far.converged and not far.contacts
     for force in (1e-3, 2e-3, 5e-3):
         found = small.loaded.solve(down(force), far)
-        assert not found.converged or len(found.contacts) == 1
         tracked = small.loaded.track(down(force), far)
-        assert not tracked.converged or len(tracked.contacts) == 1
-    gentle = small.loaded.solve(down(1e-3), far)
-    assert gentle.converged
+        for end in (found, tracked):
+            assert end.converged and len(end.contacts) == 1
+        assert_allclose(tracked.z, found.z, rtol=0, atol=1e-9)
+        short = small.loaded.track(down(force), far, max_iterations=60, max_parts=20)
+        assert short.outcome in (Outcome.CONTACT_UNSETTLED, Outcome.LOST_TRACK)
 
 
 def test_rods_touch_where_their_surfaces_meet(small: ContactLibrary) -> None:

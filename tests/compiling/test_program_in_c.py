@@ -160,6 +160,8 @@ def test_every_kind_of_instruction() -> None:
         ca.sumsqr(x) - ca.mmax(s),
         ca.if_else(x[0, 0] > 0.5, x, -x),
         ca.cumsum(x, 1),
+        # The adjoint of copies side by side sums them; its operand is a result of a split.
+        ca.repsum(low[:12].reshape((2, 6)), 1, 3) * ca.repsum(ca.horzcat(left, right), 1, 2)[:2, :2],
         ca.atan2(x, 2.0),
         ca.sign(x - 0.5) + ca.floor(3.0 * x) - ca.ceil(x) + ca.copysign(x, x - 0.5) + ca.fmod(x, 0.3),
         ca.log1p(x) + ca.expm1(x) + ca.erf(x) + ca.hypot(x, 0.5) + ca.asinh(x) + ca.acosh(x + 1.0) + ca.atanh(0.5 * x),

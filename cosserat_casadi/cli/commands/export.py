@@ -45,8 +45,8 @@ from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.tubes.tube_solution import TubeSolution
 from cosserat_casadi.tubes.tube_solve import solve_tubes
 
-APART = "Modes are chosen for rods that pass through each other: with --dynamics rods touch in steps of motions only."
-"""A sentence on motions in C of rods that touch each other exactly."""
+APART = "Modes are chosen for rods that pass through each other: no equilibrium in which they touch was found."
+"""A sentence on motions in C of rods that touch each other exactly, whose contacts at rest were not found."""
 
 LOAD_CASES = 32
 """Number of load cases in the ranges, in exact contact."""
@@ -237,9 +237,8 @@ def export(
         cases = spread(ranges, samples or LOAD_CASES, case_layout(read))
     exported_scene = _checked_scene(read, asked)
 
-    # Bases that are free in a motion are held where the scene puts them: without that there is no equilibrium. C has
-    # no equilibrium of rods that touch each other exactly.
-    solved_scene = exported_scene.held().without_exact_rods() if asked.moves else exported_scene
+    # Bases that are free in a motion are held where the scene puts them: without that there is no equilibrium.
+    solved_scene = exported_scene.held() if asked.moves else exported_scene
     chosen_cases = None
     if given_cases is not None:
         # The library starts at the inputs of the scene.
@@ -249,11 +248,16 @@ def export(
     chosen_ranges = given_ranges if given_cases is None else {}
     choice = choose_with_progress(solved_scene, chosen_ranges, in_ranges, chosen_cases)
     solution = solve(choice.model)
+    apart = asked.moves and solved_scene.rods_touch_exactly and not solution.converged
+    if apart:
+        # A motion needs no equilibrium in contact: modes for rods that pass through each other are a guess for it.
+        choice = choose_with_progress(solved_scene.without_exact_rods(), chosen_ranges, samples, chosen_cases)
+        solution = solve(choice.model)
     _check_solved(solution)
     _write(asked, exported_scene, solution, choice, cases, given_ranges)
     _write_mjcf(of_links, mjcf)
     print_choice(Console(), choice)
-    if asked.moves and exported_scene.rods_touch_exactly:
+    if apart:
         Console().print(APART)
     print_locking(Console(stderr=True), locking_sentence(choice.locked))
     missed = choice.within_tolerance is False

@@ -83,7 +83,7 @@ def contact_words(model: Model, names: Names) -> Words:
     points = points_of(struck_in_steps(model))
     stops = stop_facings(model)
     others = [own.other for own in faces if isinstance(own, RodsFacing)]
-    rods = [*(own for own in faces if isinstance(own, RodFacing)), *others]
+    rods = _rods(faces)
     nodes = [own.nodes_of_element for own in rods]
     carried = any(own.carrier is not None for own in faces)
     words: Words = {
@@ -228,13 +228,17 @@ def _tables(model: Model, faces: list[Facing]) -> Iterator[str]:
             fields["shares"] = "0" if own.shares is None else f"SHARES_OF_{number}"
         records.append(record(fields))
     yield record_table("moving_points", "POINTS", "", records)
+    # Tables of a rod serve all pairs that it is in.
+    rods = {own.owner: own for own in _rods(faces)}
+    for number, rod in enumerate(rods.values()):
+        yield from _rod_tables(rod, number)
+    numbers_of = {name: number for number, name in enumerate(rods)}
     obstacles = _obstacles(model)
     records = []
     for number, facing in enumerate(faces):
         fields = {"points": points.index(facing.points), "is_body": int(facing.of_body)}
         if isinstance(facing, RodFacing):
-            yield from _rod_tables(facing, str(number))
-            fields |= _rod_fields(facing, str(number))
+            fields |= _rod_fields(facing, numbers_of[facing.owner])
             yield reals(f"LAID_{number}", facing.laid_at)
             fields |= {"laid": f"LAID_{number}", "laid_count": len(facing.laid_at)}
         else:
@@ -249,8 +253,7 @@ def _tables(model: Model, faces: list[Facing]) -> Iterator[str]:
             fields["coefficients"] = f"{{{numbers(list(facing.against.coefficients))}}}"
             fields |= {f"{word}": f"{word}_of_{number}" for word in ("rubbing", "rubbing_derivatives")}
         if isinstance(facing, RodsFacing):
-            yield from _rod_tables(facing.other, f"OTHER_{number}")
-            other = _rod_fields(facing.other, f"OTHER_{number}") | {"length": _real(facing.other.length)}
+            other = _rod_fields(facing.other, numbers_of[facing.other.owner]) | {"length": _real(facing.other.length)}
             yield f"static const facing OTHER_{number} = {record(_whole(model, other | _radii(facing.other)))};"
             fields["other"] = f"&OTHER_{number}"
         records.append(record(_whole(model, fields)))
@@ -266,19 +269,25 @@ def _whole(model: Model, fields: Mapping[str, object]) -> dict[str, object]:
     return {name: fields.get(name, zero) for name, zero in members.items()}
 
 
-def _rod_tables(rod: RodFacing, name: str) -> Iterator[str]:
-    yield reals(f"FACING_ENDS_{name}", np.array(rod.ends))
-    yield reals(f"TO_COEFFICIENTS_{name}", rod.to_coefficients.ravel())
-    yield reals(f"LOOKS_{name}", rod.looks.ravel())
+def _rods(faces: Sequence[Facing]) -> list[RodFacing]:
+    """Rods in pairs, then the other rods of pairs of two."""
+    rods = [own for own in faces if isinstance(own, RodFacing)]
+    return [*rods, *(own.other for own in rods if isinstance(own, RodsFacing))]
 
 
-def _rod_fields(rod: RodFacing, name: str) -> dict[str, object]:
+def _rod_tables(rod: RodFacing, number: int) -> Iterator[str]:
+    yield reals(f"FACING_ENDS_{number}", np.array(rod.ends))
+    yield reals(f"TO_COEFFICIENTS_{number}", rod.to_coefficients.ravel())
+    yield reals(f"LOOKS_{number}", rod.looks.ravel())
+
+
+def _rod_fields(rod: RodFacing, number: int) -> dict[str, object]:
     return {
         "elements": len(rod.ends) - 1,
         "nodes": rod.nodes_of_element,
-        "ends": f"FACING_ENDS_{name}",
-        "to_coefficients": f"TO_COEFFICIENTS_{name}",
-        "looks": f"LOOKS_{name}",
+        "ends": f"FACING_ENDS_{number}",
+        "to_coefficients": f"TO_COEFFICIENTS_{number}",
+        "looks": f"LOOKS_{number}",
         "watches_base": int(rod.watched_ends[0]),
         "watches_tip": int(rod.watched_ends[1]),
     }

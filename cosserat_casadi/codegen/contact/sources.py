@@ -95,8 +95,8 @@ TRIES_EACH = 3
 CANDIDATES = 24
 """Most sets of contacts that wait to be tried."""
 
-TRACK_ITERATIONS, TRACK_PARTS = 60, 20
-"""Default budget of a turn of a control loop."""
+TRACK_ITERATIONS, TRACK_PARTS = 400, 40
+"""Default budget of a turn of a control loop: ordinary turns take a few, and 300 where two rods meet."""
 
 LONGEST_WAY = 0.1
 """Largest displacement of a section in one part of the path of the inputs, over the length of its rod."""
