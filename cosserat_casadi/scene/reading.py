@@ -23,6 +23,7 @@ from cosserat_casadi.scene.faults import Path as FaultPath
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.input_rules import owners_of
 from cosserat_casadi.scene.joint_ends import place_joints_by_their_ends
+from cosserat_casadi.scene.load_records import Gravity
 from cosserat_casadi.scene.messages import problem_of, problems_of
 from cosserat_casadi.scene.motion_records import InputMotion
 from cosserat_casadi.scene.obstacle_records import SMOOTH_KEYS
@@ -43,6 +44,15 @@ SOFTEST = 1e3
 
 LIGHTEST = 10.0
 """Density, kg/m³, below the density of foams: 6450 kg/m³ written as 6.45 g/cm³ is lighter."""
+
+STIFFEST = 1e13
+"""Young's modulus, Pa, above the modulus of any rod: diamond has 1.2e12."""
+
+HEAVIEST = 1e5
+"""Density, kg/m³, above the density of any rod: osmium has 22.6e3."""
+
+STRONGEST = 1e5
+"""Acceleration of gravity, m/s², ten thousand times that of the earth."""
 
 ANGLES = frozenset({"angle", "rest", "lower_stop", "upper_stop", "rotation"})
 """Keys of angles of hinges and of drives of tubes."""
@@ -273,14 +283,22 @@ def _notes(scene: Scene) -> Iterator[str]:
         modulus = material.get("youngs_modulus", math.inf)
         if modulus < SOFTEST:
             yield f"{where}.material.youngs_modulus: {modulus:g} Pa is softer than any rod (60 GPa are 60e9)"
+        elif STIFFEST < modulus < math.inf:
+            yield f"{where}.material.youngs_modulus: {modulus:g} Pa is stiffer than diamond (60 GPa are 60e9)"
         density = material.get("density", math.inf)
         if density < LIGHTEST:
             yield f"{where}.material.density: {density:g} kg/m³ is lighter than foam (is it in kg/m³?)"
+        elif HEAVIEST < density < math.inf:
+            yield f"{where}.material.density: {density:g} kg/m³ is heavier than any metal (is it in kg/m³?)"
         # The value of a length that is a parameter is unknown.
         longest = sum(lengths.values()) or math.inf
         for key, size in sizes.items():
             if size > longest:
                 yield f"{where}.section.{key}: {size:g} m is more than the length of {longest:g} m (are both in m?)"
+    for i, load in enumerate(scene.loads):
+        if isinstance(load, Gravity) and math.hypot(*load.acceleration) > STRONGEST:
+            strength = math.hypot(*load.acceleration)
+            yield f"loads[{i}].acceleration: {strength:g} m/s² is above any gravity (is it in m/s²?)"
     hinges = [(f"joints[{i}]", joint) for i, joint in enumerate(scene.joints) if joint.kind == "revolute"]
     for where, turned in (*hinges, *tubes):
         for key, angle in _numbers(turned, ANGLES).items():
