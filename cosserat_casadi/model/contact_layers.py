@@ -309,8 +309,7 @@ def pressed(obstacle: scenes.ObstacleRecord, radius: float | Matrix) -> float | 
         radius: radius of the rod, m.
     """
     assert obstacle.width is not None, "it is smooth"
-    stretch: float | Matrix = (2 * obstacle.width * (obstacle.thickness / 2 + radius)) ** 0.5
-    return stretch
+    return (2 * obstacle.width * (obstacle.thickness / 2 + radius)) ** 0.5
 
 
 def inexact_beside(scene: scenes.Scene) -> float:

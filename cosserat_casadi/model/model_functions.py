@@ -505,10 +505,7 @@ def _by_base(written: Expressions, rod: str, node: int) -> Matrix:
     """Derivative of a section's position and quaternion by the unknowns that move the base of its rod, 7×size."""
     own = ca.MX.sym("section", 7)
     pose = _stacked(written.system.base(rod).then(Pose(own[:3], own[3:])))
-    by_unknowns: Matrix = ca.substitute(
-        ca.jacobian(pose, written["x"]), own, _stacked(written.system.section(rod, node))
-    )
-    return by_unknowns
+    return ca.substitute(ca.jacobian(pose, written["x"]), own, _stacked(written.system.section(rod, node)))
 
 
 def _stacked(pose: Pose) -> Matrix:

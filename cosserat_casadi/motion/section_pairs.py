@@ -421,8 +421,7 @@ class TouchingPairs:
         """Gaps of two rods at their places, 2×k, over the length, k×1."""
         own, other = (sections[0] for sections in self._rods_in_world(system, touching, places))
         radii = ca.sum1(self._radii_at(system, touching, places))
-        gaps: Matrix = (ca.sqrt(ca.sum1((own - other) ** 2)) - radii).T / self._length(touching)
-        return gaps
+        return (ca.sqrt(ca.sum1((own - other) ** 2)) - radii).T / self._length(touching)
 
     def _rods_in_world(self, system: System, touching: TouchingSections, places: Matrix) -> list[list[Matrix]]:
         """World positions of the sections of both rods, m, and their directors, 3×k each."""

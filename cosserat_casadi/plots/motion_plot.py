@@ -164,8 +164,7 @@ def _mark_contacts(canvas: Canvas, motion: Motion, rows: list[int]) -> None:
 def _touching_point(motion: Motion, contact: MotionContact, row: int) -> FloatArray:
     """Centre of the touching section, or contact point of the ball of a body, shape (1, 3), m."""
     if not contact.of_body:
-        section: FloatArray = motion.section(contact.owner, [contact.at]).position[row]
-        return section
+        return np.asarray(motion.section(contact.owner, [contact.at]).position[row])
     (body,) = [body for body in motion.model.scene.bodies if body.name == contact.owner]
     normal = contact.force / np.linalg.norm(contact.force)
     centre: FloatArray = motion.body(body.name).position[row : row + 1]
