@@ -316,8 +316,7 @@ def rubbing_history(
 
 def _resumed(resume: Resume, size: int) -> ConsistentStart:
     """State of a continued motion with so many unknowns, to which contact forces are appended."""
-    at = Instant(resume.at.time, *(values[:size] for values in (resume.at.x, resume.at.v, resume.at.a)))
-    return ConsistentStart(at, 0.0, 0.0, 0.0, 0)
+    return ConsistentStart(resume.at.first(size), 0.0, 0.0, 0.0, 0)
 
 
 def _begin(

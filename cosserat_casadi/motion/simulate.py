@@ -305,9 +305,7 @@ class Simulator:
 
     def stepped(self, size: float) -> History:
         """Compute the motion with equal steps, s, by the integrator in the settings."""
-        method = radau(STAGES)
-        if self.simulation.integrator == "gauss":
-            method = gauss(STAGES)
+        method = gauss(STAGES) if self.simulation.integrator == "gauss" else radau(STAGES)
         tolerance = EXACT / self.displacements
         return self._integrated(method, StepSettings(tolerance=tolerance, size=size, newton=1.0))
 

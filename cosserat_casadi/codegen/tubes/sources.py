@@ -171,9 +171,7 @@ def _words(
 
 
 def _accuracy_note(model: TubeFunctions, error_estimate: float | None) -> str:
-    estimate = "was not estimated"
-    if error_estimate is not None:
-        estimate = f"is {error_estimate:.1e}"
+    estimate = "was not estimated" if error_estimate is None else f"is {error_estimate:.1e}"
     return (
         "Each piece between ends of tubes, beginnings of curved parts and places of forces has "
         f"{model.steps} steps. The estimated error of the tips at the scene's own inputs {estimate}; "
