@@ -14,14 +14,7 @@ from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.contact_depth import contact_depths, sections_lie_apart
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.floating_frames import FrameName
-from cosserat_casadi.model.function_table import (
-    PARAMETERS,
-    Expressions,
-    Output,
-    Owner,
-    owned_functions,
-    scene_function,
-)
+from cosserat_casadi.model.function_table import PARAMETERS, Expressions, Output, Owner, owned_functions, scene_function
 from cosserat_casadi.model.load_assembly import RodBase, RodLoads
 from cosserat_casadi.model.load_memory import rubbing_at_nodes
 from cosserat_casadi.model.registry import EFFECTS

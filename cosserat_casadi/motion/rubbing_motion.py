@@ -20,15 +20,7 @@ from cosserat_casadi.motion.checkpoint import CarriedContacts, Resume, of_anothe
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact, Touches
 from cosserat_casadi.motion.contact_guards import SAME_PLACE, ContactPhase, start_inside
 from cosserat_casadi.motion.event_restart import ContactEvent, Restart
-from cosserat_casadi.motion.history import (
-    DIFFERENTIATED,
-    FreeFlight,
-    History,
-    Leg,
-    Stops,
-    check_start,
-    equations_of,
-)
+from cosserat_casadi.motion.history import DIFFERENTIATED, FreeFlight, History, Leg, Stops, check_start, equations_of
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.one_sided import OneSided, sags_by_cable
 from cosserat_casadi.motion.rubbing_library import KNOWN, RubbingSteps, RubbingTouch, ToldStretch
@@ -39,13 +31,7 @@ from cosserat_casadi.motion.stops_facing import PairFacing
 from cosserat_casadi.numerics.collocation import radau
 from cosserat_casadi.numerics.consistent_start import ConsistentStart, consistent_start
 from cosserat_casadi.numerics.guards import crossing
-from cosserat_casadi.numerics.integration import (
-    AfterStep,
-    Integration,
-    IntegrationCost,
-    StepOutcome,
-    StepSettings,
-)
+from cosserat_casadi.numerics.integration import AfterStep, Integration, IntegrationCost, StepOutcome, StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
 SHORTEST = 2.0**-12

@@ -15,13 +15,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.checkpoint import Checkpoint
 from cosserat_casadi.motion.contact_record import MotionContact
 from cosserat_casadi.motion.event_restart import ContactEvent
-from cosserat_casadi.motion.pose_series import (
-    ActuatorStates,
-    Poses,
-    poses_of,
-    section_poses,
-    states_of,
-)
+from cosserat_casadi.motion.pose_series import ActuatorStates, Poses, poses_of, section_poses, states_of
 from cosserat_casadi.numerics.outcome import LabelledOutcome
 from cosserat_casadi.result import Result
 

@@ -29,12 +29,7 @@ from cosserat_casadi.codegen.library import (
     solver_constants,
     title_words,
 )
-from cosserat_casadi.codegen.manifest import (
-    TUBES,
-    accuracy_entries,
-    head_entries,
-    with_manifest,
-)
+from cosserat_casadi.codegen.manifest import TUBES, accuracy_entries, head_entries, with_manifest
 from cosserat_casadi.codegen.names import Names, scene_names
 from cosserat_casadi.codegen.parameter_sources import parameter_words
 from cosserat_casadi.codegen.parameters import given_size, parameter_rate, with_parameters_behind_inputs
