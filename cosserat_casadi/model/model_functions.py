@@ -13,7 +13,6 @@ from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_mat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.contact_depth import contact_depths, sections_lie_apart
 from cosserat_casadi.model.discrete_scene import DiscreteScene
-from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.function_table import PARAMETERS, Expressions, Output, Owner, owned_functions, scene_function
 from cosserat_casadi.model.load_assembly import RodBase, RodLoads
 from cosserat_casadi.model.load_memory import rubbing_at_nodes
@@ -384,8 +383,8 @@ class ModelFunctions:
     )
     def body(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ (position, quaternion, rotation) of a rigid body, world frame."""
-        frame = written.system.frame(FrameName("body", written.owner))
-        return [frame.position, frame.quaternion, frame.rotation]
+        body = written.system.body(written.owner)
+        return [body.position, body.quaternion, body.rotation]
 
     @owned_functions(
         Owner.BODY,
@@ -401,8 +400,7 @@ class ModelFunctions:
         riding = written.system.riding.get(written.owner)
         if riding is not None:
             return _section_derivatives(written, riding.rod, riding.node, riding.in_section)
-        frame = written.system.frame(FrameName("body", written.owner))
-        pose = ca.vertcat(frame.position, frame.quaternion)
+        pose = _stacked(written.system.body(written.owner))
         return [ca.densify(ca.jacobian(pose, symbol)) for symbol in written.symbols.values()]
 
     @scene_function(Output("energy", "J"))
