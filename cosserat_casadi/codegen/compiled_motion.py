@@ -432,9 +432,7 @@ class CompiledMotion(LoadedLibrary):
         residual = np.zeros(self.size)
         rates = self._changing(inputs_rate), self._changing(inputs_acceleration, "inputs_acceleration")
         given = *self._given(inputs, parameters), *rates
-        # A slice of a table is no vector in memory: C reads what lies side by side.
-        named = {"x": state.x, "v": state.v, "a": state.a}
-        arguments = [pointer(vector(value, self.size, name)) for name, value in named.items()]
+        arguments = [pointer(part) for part in self._parts(state)]
         self._motion_function("inverse_dynamics")(*arguments, *given, pointer(residual), self._workspace())
         return residual
 
@@ -507,8 +505,11 @@ class CompiledMotion(LoadedLibrary):
 
     def _packed(self, state: StepState) -> FloatArray:
         """Convert a state to its struct in C."""
-        named = {"x": state.x, "v": state.v, "a": state.a}
-        return np.concatenate([vector(value, self.size, name) for name, value in named.items()])
+        return np.concatenate(self._parts(state))
+
+    def _parts(self, state: StepState) -> list[FloatArray]:
+        """x, v and a of a state as arrays that lie side by side in memory."""
+        return [vector(getattr(state, name), self.size, name) for name in ("x", "v", "a")]
 
     def _unpacked(self, packed: FloatArray) -> StepState:
         return StepState(*packed.reshape(3, self.size))

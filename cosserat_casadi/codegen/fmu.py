@@ -18,6 +18,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from cosserat_casadi.accuracy.verified import Verified
+from cosserat_casadi.codegen.contact.moving import starts_unloaded
 from cosserat_casadi.codegen.export import folder_files
 from cosserat_casadi.codegen.kernel_files import kernel_sources
 from cosserat_casadi.codegen.kernels import kernel
@@ -161,7 +162,7 @@ def _fmu_sources(model: Model, names: Names, outputs: MotionOutputs, step: float
         **_parameter_words(model, names),
         "budget": f"{STEP_TOLERANCE!r}, {STEP_ITERATIONS}, {STEP_PARTS}",
         "step": repr(step),
-        "unloaded": int(_starts_unloaded(model)),
+        "unloaded": int(starts_unloaded(model)),
         "starts_in_contact": model.scene.touches_exactly,
         "token": "@{token}",
     }
@@ -186,11 +187,6 @@ def _parameter_words(model: Model, names: Names) -> dict[str, str | int]:
         "parameter_defaults": f"{names.macro}_PARAMETER_DEFAULTS" if count else "{0}",
         **{word: f", {argument}" if count else "" for word, argument in arguments.items()},
     }
-
-
-def _starts_unloaded(model: Model) -> bool:
-    """Whether the motion begins in the unloaded shape, as it does with free bases, which have no equilibrium."""
-    return any(rod.base.free for rod in model.scene.rods) or model.scene.starts_unloaded
 
 
 def _token(sources: Mapping[str, str]) -> str:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from enum import Enum
 
 from cosserat_casadi.codegen.names import Names
-from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.numerics.outcome import LabelledOutcome, Outcome
 
 Outcomes = tuple[Outcome, ...]
 """Statuses of a solver in C, in the order of their numbers."""
@@ -28,7 +27,7 @@ TUBE_OUTCOMES = _without(
 """Statuses of the solver of concentric tubes."""
 
 
-class MotionStatus(Enum):
+class MotionStatus(LabelledOutcome):
     """Outcomes of a step in C; the value is the sentence for the user. New members come last."""
 
     DONE = "Done: the equations of motion are solved to the tolerance."
@@ -54,11 +53,6 @@ class MotionStatus(Enum):
         "Sections at which contact is summed lie too far apart for this length, radius or width: export the scene with "
         "these numbers, or on more intervals."
     )
-
-    @property
-    def label(self) -> str:
-        """Name of the outcome for programs."""
-        return self.name.lower()
 
 
 MOTION_STATUSES = tuple(MotionStatus)

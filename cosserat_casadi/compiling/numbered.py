@@ -228,8 +228,7 @@ def function_of(program: Program) -> ca.Function:
 
     def matrix(value: Value) -> ca.MX:
         entries = _gathered(origins, columns, value.numbers)
-        made: ca.MX = ca.sparsity_cast(entries, value.pattern)
-        return made
+        return ca.sparsity_cast(entries, value.pattern)
 
     symbols = []
     for argument in program.arguments:

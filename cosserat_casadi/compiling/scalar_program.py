@@ -189,8 +189,7 @@ def _without_copies(lines: Lines, results: slice) -> Lines:
     for column, definitions in zip((2, 3), _definitions(lines).T, strict=True):
         of_copy = (definitions >= 0) & is_copy[definitions]
         lines[of_copy, column] = lines[definitions[of_copy], 2]
-    kept: Lines = lines[~is_copy | _are_results(lines, results)]
-    return kept
+    return np.asarray(lines[~is_copy | _are_results(lines, results)])
 
 
 def _with_products(lines: Lines, results: slice) -> Lines:

@@ -12,7 +12,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cache
 from itertools import pairwise
 
@@ -47,7 +47,7 @@ SUMS = {ca.OP_ADD, ca.OP_SUB}
 SAME_ENTRIES = {ca.OP_RESHAPE, ca.OP_SPARSITY_CAST}
 SIDE_BY_SIDE = {ca.OP_HORZCAT, ca.OP_VERTCAT, ca.OP_DIAGCAT}
 ADDING = {ca.OP_SETNONZEROS, ca.OP_ADDNONZEROS}
-REDUCTIONS = {ca.OP_DOT: ca.dot, ca.OP_MMIN: ca.mmin, ca.OP_MMAX: ca.mmax}
+REDUCTIONS: dict[int, Callable[..., ca.MX]] = {ca.OP_DOT: ca.dot, ca.OP_MMIN: ca.mmin, ca.OP_MMAX: ca.mmax}
 SPLITS = {ca.OP_HORZSPLIT, ca.OP_VERTSPLIT, ca.OP_DIAGSPLIT}
 
 
@@ -440,16 +440,14 @@ def _with_operands(code: int, node: ca.MX, operands: Sequence[ca.MX]) -> ca.MX:
     Raises:
         UnknownInstructionError: CasADi has no way to replace its operands.
     """
-    result: ca.MX
     if code in REDUCTIONS:
-        result = REDUCTIONS[code](*operands)
-        return result
+        return REDUCTIONS[code](*operands)
     if code == ca.OP_HORZREPSUM:
-        result = ca.repsum(operands[0], 1, operands[0].shape[1] // node.shape[1])
-        return result
+        return ca.repsum(operands[0], 1, operands[0].shape[1] // node.shape[1])
     before = [node.dep(i) for i in range(node.n_dep())]
     if any(operand.is_output() for operand in before):
         raise UnknownInstructionError
+    result: ca.MX
     (result,) = ca.graph_substitute([node], before, operands)
     return result
 

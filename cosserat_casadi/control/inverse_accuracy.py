@@ -10,14 +10,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.refine import LARGEST_SHAPE_ERROR
-from cosserat_casadi.control.inverse import (
-    STARTS,
-    check_targets,
-    first_solution,
-    inverse_problem,
-    search,
-    search_near,
-)
+from cosserat_casadi.control.inverse import STARTS, check_targets, first_solution, inverse_problem, search, search_near
 from cosserat_casadi.control.inverse import inverse as inverse_model
 from cosserat_casadi.control.inverse_levels import levels_of
 from cosserat_casadi.control.inverse_result import Inverse, with_verdict

@@ -147,9 +147,7 @@ def _minimum_sentence(result: Inverse) -> str:
     where = "within the bounds"
     if result.at_bounds:
         where = f"at the bound of {', '.join(result.at_bounds)}"
-    starts = "1 start"
-    if result.starts > 1:
-        starts = f"{result.starts} starts"
+    starts = f"{result.starts} starts" if result.starts > 1 else "1 start"
     sentence = f" It is a local minimum {where}, the best of {starts}."
     if result.cut_short:
         sentence = f" The optimiser ran out of time {where}, in the best of {starts}: it need not be a local minimum."

@@ -152,15 +152,16 @@ class LiftedProblem(SoughtInputs):
             ranges: least and largest changes; the unknowns are not bounded.
         """
         unbounded = np.full(self.model.size, np.inf)
-        optimum: FloatArray = self.optimiser(
-            x0=np.concatenate([x, centre]),
-            p=np.concatenate([centre, [damping], self.origin, wanted_poses(self.targets)]),
-            lbg=0.0,
-            ubg=0.0,
-            lbx=np.concatenate([-unbounded, ranges[0]]),
-            ubx=np.concatenate([unbounded, ranges[1]]),
-        )["x"].full()[:, 0]
-        return optimum
+        return np.asarray(
+            self.optimiser(
+                x0=np.concatenate([x, centre]),
+                p=np.concatenate([centre, [damping], self.origin, wanted_poses(self.targets)]),
+                lbg=0.0,
+                ubg=0.0,
+                lbx=np.concatenate([-unbounded, ranges[0]]),
+                ubx=np.concatenate([unbounded, ranges[1]]),
+            )["x"].full()[:, 0]
+        )
 
 
 def lifted_problem(

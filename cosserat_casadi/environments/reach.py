@@ -209,8 +209,7 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):  # type: ignore
             inputs[self._acting.indices] = self._from_share(share)
             found = self.library.solve(inputs)
             if found.converged:
-                position: FloatArray = self.model.tip[self.rod](found.x, inputs)[0].full().ravel()
-                return position
+                return np.asarray(self.model.tip[self.rod](found.x, inputs)[0].full().ravel())
         raise RuntimeError(f"none of {DRAWS} random inputs within the bounds has an equilibrium: narrow the bounds")
 
     def _from_share(self, share: FloatArray) -> FloatArray:

@@ -79,9 +79,7 @@ def _tries(solution: Solution) -> Iterator[tuple[FloatArray, float]]:
     """
     model = solution.model
     # A held rod begins without its springs, at its intrinsic shape.
-    unknowns = solution.x
-    if model.discrete.constraints:
-        unknowns = model.unloaded()
+    unknowns = model.unloaded() if model.discrete.constraints else solution.x
     start = unknowns[: model.discrete.unknowns.count(BlockKind.STRAIN)]
     for side in SIDES:
         yield start, side

@@ -79,8 +79,7 @@ def _push_between(
         return np.zeros(3)
     per_length = pressure(layer, _gaps(solution, layer, X))
     assert layer.rod is not None, "a layer along a rod"
-    push: FloatArray = (weights * per_length) @ normals(solution, layer.rod, layer.obstacle, X)
-    return push
+    return np.asarray((weights * per_length) @ normals(solution, layer.rod, layer.obstacle, X))
 
 
 def _summed_at(sections: SummedSections | None, start: float, end: float) -> tuple[FloatArray, FloatArray]:

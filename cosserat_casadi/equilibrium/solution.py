@@ -271,9 +271,7 @@ class Solution(Equilibrium[Model]):
             KeyError: there is no such body, or there are several to choose from.
         """
         names = list(self.model.body)
-        chosen = name
-        if name is None and len(names) == 1:
-            chosen = names[0]
+        chosen = names[0] if name is None and len(names) == 1 else name
         if chosen not in names:
             raise KeyError(f"{name!r} is not a body of this scene; its bodies are {', '.join(names) or 'none'}")
         pose = self.model.body[chosen]

@@ -94,5 +94,4 @@ def _distance(one: Estimates, other: Estimates) -> FloatArray:
 def _log_mass(run: Estimates, rows: npt.NDArray[np.bool_], own: int) -> FloatArray:
     """Logarithm of the posterior mass around the minima of some rows, up to a constant, by Laplace's method."""
     _, log_determinant = np.linalg.slogdet(run.information[rows, :own, :own])
-    mass: FloatArray = -run.cost[rows] - log_determinant / 2.0
-    return mass
+    return np.asarray(-run.cost[rows] - log_determinant / 2.0)

@@ -44,8 +44,7 @@ class Sampled:
     @property
     def sound(self) -> npt.NDArray[np.bool_]:
         """Mask of the rows with enough effective draws for the covariance, shape (cases,)."""
-        is_sound: npt.NDArray[np.bool_] = self.effective >= LEAST_EFFECTIVE * self.covariance.shape[1]
-        return is_sound
+        return np.asarray(self.effective >= LEAST_EFFECTIVE * self.covariance.shape[1])
 
 
 def sampled(costs: Costs, least: FloatArray, covariance: FloatArray, draws: int) -> Sampled:
@@ -86,15 +85,13 @@ def _weights(logarithms: FloatArray) -> FloatArray:
     largest = logarithms.max(axis=1, keepdims=True)
     weights = np.exp(logarithms - np.where(np.isfinite(largest), largest, 0.0))
     total = weights.sum(axis=1, keepdims=True)
-    normalised: FloatArray = np.divide(weights, total, out=np.zeros_like(weights), where=total > 0.0)
-    return normalised
+    return np.asarray(np.divide(weights, total, out=np.zeros_like(weights), where=total > 0.0))
 
 
 def _effective(weights: FloatArray) -> FloatArray:
     """Effective number of weighted draws, shape (cases,); 0 if all weights are 0."""
     squares = np.sum(weights**2, axis=1)
-    effective: FloatArray = np.divide(1.0, squares, out=np.zeros_like(squares), where=squares > 0.0)
-    return effective
+    return np.asarray(np.divide(1.0, squares, out=np.zeros_like(squares), where=squares > 0.0))
 
 
 def normal_draws(count: int, k: int) -> FloatArray:

@@ -97,8 +97,7 @@ class Equilibria:
 
     def residuals(self, x: FloatArray, inputs: FloatArray, p: FloatArray) -> FloatArray:
         """Residuals of all cases, shape (cases, size)."""
-        residuals: FloatArray = self._over_cases("residual", x, inputs, p).full().T
-        return residuals
+        return np.asarray(self._over_cases("residual", x, inputs, p).full().T)
 
     def jacobians(self, x: FloatArray, inputs: FloatArray, p: FloatArray) -> FloatArray:
         """Jacobians of all cases, shape (cases, size, size)."""

@@ -24,7 +24,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import InputLayout
 from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.scene.faults import listing
-from cosserat_casadi.scene.number_table import finite_number, length_faults, read_rows, repeated, shortened
+from cosserat_casadi.scene.number_table import begun_rows, finite_number, length_faults, repeated, shortened
 
 NOT_MEASURED = ("", "nan", "na", "none", "null")
 """Cells, in lower case, that mean that nothing was measured."""
@@ -432,7 +432,8 @@ def read_table(path: Path) -> DataFile:
     Raises:
         SceneError: the file cannot be read, has no row, has a column twice, or rows of unequal length.
     """
-    header, rows = read_rows(path)
+    header, later = begun_rows(path)
+    rows = list(later)
     problems = [Problem(str(path), f"has the column {column!r} twice") for column in repeated(header)]
     for line, row in rows:
         problems += length_faults(f"{path}, line {line}", header, row)

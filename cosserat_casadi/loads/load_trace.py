@@ -129,9 +129,7 @@ def _trace(member: Load[Any], load: Any, patterns: Patterns, data_size: int) -> 
     )
     # Entries that are always zero have no symbol, so that their products are structurally zero too.
     symbols = {name: ca.SX.sym(name, ca.Sparsity.compressed(pattern)) for name, pattern in patterns}
-    written = load
-    if expressions_in(load):
-        written = with_expressions(load, symbols)
+    written = with_expressions(load, symbols) if expressions_in(load) else load
     energy = member.energy(written, section, symbols)
     given_force, given_moment = member.wrench(written, section, symbols)
     force = ca.sparsify(ca.SX(given_force))

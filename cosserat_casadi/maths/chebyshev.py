@@ -38,8 +38,7 @@ def _half_angle_sine(N: int, m: npt.NDArray[np.int_]) -> FloatArray:
     # Folded into [0, π/2], where the sine of a rounded angle is as exact as the angle.
     folded = np.minimum(size, 2 * N - size)
     step = np.pi / (2 * N)
-    sines: FloatArray = np.sign(m) * np.sin(step * folded)
-    return sines
+    return np.asarray(np.sign(m) * np.sin(step * folded))
 
 
 def _cosine_matrix(N: int) -> FloatArray:
@@ -282,5 +281,4 @@ def chebyshev_coefficients(values: npt.ArrayLike) -> FloatArray:
     k = np.arange(N + 1)
     signs = np.where(k % 2 == 0, 1.0, -1.0)
     transform = signs[:, None] * _cosine_transform(N)
-    coefficients: FloatArray = transform @ v
-    return coefficients
+    return np.asarray(transform @ v)

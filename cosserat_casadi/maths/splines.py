@@ -100,8 +100,7 @@ def table_values(
         segments = np.searchsorted(knots, times, side="right")
         s = (times - origins[segments])[:, None]
         constant, linear, quadratic, cubic = np.moveaxis(coefficients[segments], 1, 0)
-        found: FloatArray = constant + s * (linear + s * (quadratic + s * cubic))
-        return found
+        return np.asarray(constant + s * (linear + s * (quadratic + s * cubic)))
 
     return at
 

@@ -121,5 +121,4 @@ def positions_before(system: System, layer: ContactLayer) -> Matrix:
     positions = system.seen_from(layer.obstacle.body, system.nodes(layer.rod))
     if layer.at is None:
         return positions
-    of_disk: Matrix = positions[:, system.shapes[layer.rod].rod.grid.node_at(layer.at)]
-    return of_disk
+    return positions[:, system.shapes[layer.rod].rod.grid.node_at(layer.at)]

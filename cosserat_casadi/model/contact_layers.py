@@ -110,7 +110,7 @@ def contact_layers(scene: scenes.Scene, rods: Mapping[str, DiscreteRod]) -> Iter
                     obstacle=obstacle,
                     stiffness=stiffness,
                     body=body.name,
-                    radius=_radius(body),
+                    radius=body.ball_radius,
                 )
 
 
@@ -127,19 +127,13 @@ def _body_stiffness(obstacle: scenes.ObstacleRecord, body: scenes.Body, rods: Ma
     """Stiffness of an obstacle for a body, N/m: the scene's, or else that for a rod as long as the body is thick."""
     assert obstacle.width is not None
     if obstacle.stiffness is not None:
-        return obstacle.stiffness * 2 * _radius(body)
+        return obstacle.stiffness * 2 * body.ball_radius
     return 3 * SURFACE_FORCE * max(map(_bending_force, rods.values())) / obstacle.width
 
 
 def _bending_force(rod: DiscreteRod) -> float:
     """EI/L² of a rod, N."""
     return float(rod.energy_unit / rod.properties.length)
-
-
-def _radius(body: scenes.Body) -> float:
-    """Radius of a body that an obstacle names, m."""
-    assert body.radius is not None, "the rules of the scene ask for one"
-    return body.radius
 
 
 def layer_ends(scene: scenes.Scene, rod: scenes.Rod) -> list[float]:
@@ -309,8 +303,7 @@ def pressed(obstacle: scenes.ObstacleRecord, radius: float | Matrix) -> float | 
         radius: radius of the rod, m.
     """
     assert obstacle.width is not None, "it is smooth"
-    stretch: float | Matrix = (2 * obstacle.width * (obstacle.thickness / 2 + radius)) ** 0.5
-    return stretch
+    return (2 * obstacle.width * (obstacle.thickness / 2 + radius)) ** 0.5
 
 
 def inexact_beside(scene: scenes.Scene) -> float:

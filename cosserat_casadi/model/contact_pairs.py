@@ -201,8 +201,7 @@ def half_of_stretch(touching: Scalar, width: Scalar) -> Scalar:
         touching: distance of their centres, m.
         width: width of the contact, m.
     """
-    half: Scalar = ((touching + width) ** 2 - touching**2) ** 0.5
-    return half
+    return ((touching + width) ** 2 - touching**2) ** 0.5
 
 
 def pair_widths(scene: scenes.Scene, rod: str) -> list[float]:

@@ -13,15 +13,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.loads.load import Site, UnloadedPoses
 from cosserat_casadi.loads.load_trace import TracedLoad, stored, traced
-from cosserat_casadi.maths.numbers import (
-    Numbers,
-    among,
-    any_symbolic,
-    as_matrix,
-    is_symbolic,
-    is_zero,
-    known,
-)
+from cosserat_casadi.maths.numbers import Numbers, among, any_symbolic, as_matrix, is_symbolic, is_zero, known
 from cosserat_casadi.maths.pose import NumericPose, Pose, written_pose
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene

@@ -195,8 +195,7 @@ class TabulatedLaw(Law[records.TabulatedMaterial]):
             if bent:
                 assert radial is not None
                 shares.append(radial.share_left(_size_of_bending(change, bent, 0.0)))
-            least: Matrix = ca.mmin(ca.vertcat(*shares))
-            return least
+            return ca.mmin(ca.vertcat(*shares))
 
         return EnergyBeyondHooke(density, of_rod.columns([], [of_rod.hooke_of(c) for c in stiff]), margin)
 

@@ -13,15 +13,7 @@ from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_mat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.contact_depth import contact_depths, sections_lie_apart
 from cosserat_casadi.model.discrete_scene import DiscreteScene
-from cosserat_casadi.model.floating_frames import FrameName
-from cosserat_casadi.model.function_table import (
-    PARAMETERS,
-    Expressions,
-    Output,
-    Owner,
-    owned_functions,
-    scene_function,
-)
+from cosserat_casadi.model.function_table import PARAMETERS, Expressions, Output, Owner, owned_functions, scene_function
 from cosserat_casadi.model.load_assembly import RodBase, RodLoads
 from cosserat_casadi.model.load_memory import rubbing_at_nodes
 from cosserat_casadi.model.registry import EFFECTS
@@ -391,8 +383,8 @@ class ModelFunctions:
     )
     def body(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ (position, quaternion, rotation) of a rigid body, world frame."""
-        frame = written.system.frame(FrameName("body", written.owner))
-        return [frame.position, frame.quaternion, frame.rotation]
+        body = written.system.body(written.owner)
+        return [body.position, body.quaternion, body.rotation]
 
     @owned_functions(
         Owner.BODY,
@@ -408,8 +400,7 @@ class ModelFunctions:
         riding = written.system.riding.get(written.owner)
         if riding is not None:
             return _section_derivatives(written, riding.rod, riding.node, riding.in_section)
-        frame = written.system.frame(FrameName("body", written.owner))
-        pose = ca.vertcat(frame.position, frame.quaternion)
+        pose = _stacked(written.system.body(written.owner))
         return [ca.densify(ca.jacobian(pose, symbol)) for symbol in written.symbols.values()]
 
     @scene_function(Output("energy", "J"))
@@ -505,10 +496,7 @@ def _by_base(written: Expressions, rod: str, node: int) -> Matrix:
     """Derivative of a section's position and quaternion by the unknowns that move the base of its rod, 7×size."""
     own = ca.MX.sym("section", 7)
     pose = _stacked(written.system.base(rod).then(Pose(own[:3], own[3:])))
-    by_unknowns: Matrix = ca.substitute(
-        ca.jacobian(pose, written["x"]), own, _stacked(written.system.section(rod, node))
-    )
-    return by_unknowns
+    return ca.substitute(ca.jacobian(pose, written["x"]), own, _stacked(written.system.section(rod, node)))
 
 
 def _stacked(pose: Pose) -> Matrix:

@@ -87,5 +87,4 @@ def by_friction(system: System, arguments: Sequence[Matrix]) -> list[Matrix]:
     rows = SceneEquations(replace(system, friction=given)).residual
     loads_by = [ca.vertcat(*[terms.friction_jacobian(argument) for terms in system.rubbing]) for argument in arguments]
     changes = [ca.jtimes(rows, symbol, ca.densify(derivative)) for derivative in loads_by]
-    derivatives: list[Matrix] = ca.substitute(changes, [symbol], [loads])
-    return derivatives
+    return ca.substitute(changes, [symbol], [loads])

@@ -103,7 +103,7 @@ class CentredCoordinates:
 
     def to_model(self, instant: Instant) -> Instant:
         """State in the unknowns of the model, from a state in these coordinates."""
-        own = self._own(instant)
+        own = instant.first(self._size)
         base = self._base(own.x, own.v, own.a).reshape(ORDERS, POSE_SIZE)
         parts = [instant.x.copy(), instant.v.copy(), instant.a.copy()]
         for part, of_base in zip(parts, base, strict=True):
@@ -196,16 +196,9 @@ class CentredCoordinates:
         order[self._pose] = self._size + np.arange(POSE_SIZE)
         return ca.vertcat(own, base)[order.tolist()]
 
-    def _own(self, instant: Instant) -> Instant:
-        """The state without the contact forces that are appended to it."""
-        if len(instant.x) == self._size:
-            return instant
-        own = slice(0, self._size)
-        return Instant(instant.time, instant.x[own], instant.v[own], instant.a[own])
-
     def _jet(self, instant: Instant) -> tuple[FloatArray, FloatArray, FloatArray]:
         """The rows of Φ, Φ̇ and Φ̈ that belong to the base, shape (7, size) each."""
-        own = self._own(instant)
+        own = instant.first(self._size)
         value, rate, acceleration = self._derivatives.matrices(own.x, own.v, own.a)
         return value, rate, acceleration
 

@@ -289,8 +289,7 @@ class MotionStage:
     @cached_property
     def places(self) -> ca.DM:
         """Matrix that scatters differential entries into x of :attr:`dynamics`, sparse, state_size / 2 columns."""
-        places: ca.DM = ca.vertcat(differential_places(self.model), ca.DM(self._forces, self.state_size // 2))
-        return places
+        return ca.vertcat(differential_places(self.model), ca.DM(self._forces, self.state_size // 2))
 
 
 def differential_places(model: Model) -> ca.DM:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.contact.gaps import ball_radius, body_pairs, pairs
+from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs
 from cosserat_casadi.equilibrium.smooth_contact import depths_along
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
 from cosserat_casadi.errors import Problem
@@ -77,7 +77,7 @@ def _too_thin(model: Model) -> Iterator[Problem]:
         met.append((obstacle, f"the section of {rod!r}", own, properties.length))
     for body, obstacle in body_pairs(model.scene):
         met.append(
-            (obstacle, f"the ball of {body.name!r}", ball_radius(body), model.discrete.body_frame(body.name).length)
+            (obstacle, f"the ball of {body.name!r}", body.ball_radius, model.discrete.body_frame(body.name).length)
         )
     for contact, rods in named_pairs(model.scene):
         properties = [model.discrete.rods[rod].properties for rod in rods]

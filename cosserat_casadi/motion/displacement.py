@@ -80,5 +80,4 @@ def _of_strains(rod: DiscreteRod) -> FloatArray:
     moved = np.linalg.norm(of_positions, axis=0).max(axis=0) / rod.length
     turned = np.zeros(rod.size)
     turned[: turns.shape[1]] = np.linalg.norm(turns.reshape(3, points, -1), axis=0).max(axis=0, initial=0.0)
-    sizes: FloatArray = np.maximum(moved, LEVER * turned)
-    return sizes
+    return np.asarray(np.maximum(moved, LEVER * turned))

@@ -160,8 +160,7 @@ class ExactContacts:
             interval: time after the event in which the inputs are smooth, s.
             jerked: whether a cable or a stop has changed the velocities at this instant.
         """
-        size = self.model.size
-        before = Instant(at.time, at.x[:size], at.v[:size], at.a[:size])
+        before = at.first(self.model.size)
         moment, changes = phases.moment, phases.changes + 1
         if at.time - moment > MOMENT * interval:
             moment, changes = at.time, 0

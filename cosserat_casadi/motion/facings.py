@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from cosserat_casadi.equilibrium.contact.gaps import ball_radius
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.contact_pairs import named_pairs
 from cosserat_casadi.model.function_table import kept_with
@@ -55,7 +54,7 @@ def _facings(model: Model, libraries: Libraries) -> list[Facing]:
         if not concerned:
             continue
         points = centre_of(model, body.name, libraries)
-        found += [BodyFacing(model, body.name, obstacle, points, True, ball_radius(body)) for obstacle in concerned]
+        found += [BodyFacing(model, body.name, obstacle, points, True, body.ball_radius) for obstacle in concerned]
     for contact, rods in named_pairs(model.scene):
         if contact.exact:
             points = nodes_of_both(model, rods, libraries)

@@ -308,11 +308,7 @@ class History:
 
     def of_model(self, instant: Instant) -> Instant:
         """State of a step in the unknowns of the model, without contact forces."""
-        instant = self.flight.to_model(instant)
-        size = self.model.size
-        if len(instant.x) == size:
-            return instant
-        return Instant(instant.time, instant.x[:size], instant.v[:size], instant.a[:size])
+        return self.flight.to_model(instant).first(self.model.size)
 
     def number_at(self, time: float) -> int:
         """Number of the step that contains a time; at the end of a step, the number of that step."""

@@ -274,9 +274,7 @@ def _spent(model: Model) -> dict[str, float]:
 
 def _interpreted_time(model: Model, name: str, work: StepStatistics) -> float:
     """Processor time of the virtual machine for a function in a motion, s."""
-    calls = STAGES * work.iterations
-    if name == JACOBIANS:
-        calls = AS_MANY_RESIDUALS * work.jacobians
+    calls = AS_MANY_RESIDUALS * work.jacobians if name == JACOBIANS else STAGES * work.iterations
     return calls * _instructions(model) * INSTRUCTION
 
 

@@ -16,7 +16,6 @@ from cosserat_casadi.compiling.shared_records import Held
 from cosserat_casadi.maths.calls import KEPT
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.motion.contact_law import PointsRecord, called, called_in_c, function_record
 from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries, RepeatedCall, repeated
@@ -277,12 +276,7 @@ def nodes_of_both(model: Model, rods: tuple[str, str], libraries: Libraries = IN
 
 def centre_of(model: Model, body: str, libraries: Libraries = INTERPRETED) -> MovingPoints:
     """The origin of a body."""
-    return MovingPoints(
-        model,
-        lambda system: system.frame(FrameName("body", body)).position,
-        f"body_{_number_of(model, body)}",
-        libraries,
-    )
+    return MovingPoints(model, lambda system: system.body(body).position, f"body_{_number_of(model, body)}", libraries)
 
 
 def _number_of(model: Model, body: str) -> int:

@@ -155,8 +155,7 @@ class NearestPlaces:
 def nodes_by_products(system: System, rod: str) -> Matrix:
     """World positions of the nodes of a rod, 3×M, m, by products of matrices, whose derivatives are short in C."""
     base, shape = system.base(rod), system.shapes[rod]
-    nodes: Matrix = ca.MX(base.position) @ ca.DM.ones(1, shape.rod.grid.size) + base.rotation @ shape.position
-    return nodes
+    return ca.MX(base.position) @ ca.DM.ones(1, shape.rod.grid.size) + base.rotation @ shape.position
 
 
 def _least(count: int, others: int) -> ca.Function:

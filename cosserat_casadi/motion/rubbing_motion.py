@@ -20,15 +20,7 @@ from cosserat_casadi.motion.checkpoint import CarriedContacts, Resume, of_anothe
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact, Touches
 from cosserat_casadi.motion.contact_guards import SAME_PLACE, ContactPhase, start_inside
 from cosserat_casadi.motion.event_restart import ContactEvent, Restart
-from cosserat_casadi.motion.history import (
-    DIFFERENTIATED,
-    FreeFlight,
-    History,
-    Leg,
-    Stops,
-    check_start,
-    equations_of,
-)
+from cosserat_casadi.motion.history import DIFFERENTIATED, FreeFlight, History, Leg, Stops, check_start, equations_of
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.one_sided import OneSided, sags_by_cable
 from cosserat_casadi.motion.rubbing_library import KNOWN, RubbingSteps, RubbingTouch, ToldStretch
@@ -39,13 +31,7 @@ from cosserat_casadi.motion.stops_facing import PairFacing
 from cosserat_casadi.numerics.collocation import radau
 from cosserat_casadi.numerics.consistent_start import ConsistentStart, consistent_start
 from cosserat_casadi.numerics.guards import crossing
-from cosserat_casadi.numerics.integration import (
-    AfterStep,
-    Integration,
-    IntegrationCost,
-    StepOutcome,
-    StepSettings,
-)
+from cosserat_casadi.numerics.integration import AfterStep, Integration, IntegrationCost, StepOutcome, StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
 SHORTEST = 2.0**-12
@@ -316,8 +302,7 @@ def rubbing_history(
 
 def _resumed(resume: Resume, size: int) -> ConsistentStart:
     """State of a continued motion with so many unknowns, to which contact forces are appended."""
-    at = Instant(resume.at.time, *(values[:size] for values in (resume.at.x, resume.at.v, resume.at.a)))
-    return ConsistentStart(at, 0.0, 0.0, 0.0, 0)
+    return ConsistentStart(resume.at.first(size), 0.0, 0.0, 0.0, 0)
 
 
 def _begin(

@@ -40,7 +40,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.cable_length import pair_kernel
 from cosserat_casadi.equilibrium.contact.gap_rows import RodSurface
-from cosserat_casadi.equilibrium.contact.gaps import ball_radius, body_pairs, pairs, support_of
+from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs, support_of
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_from, surface
 from cosserat_casadi.loads.contact_layer import along_surface, weighted_way
 from cosserat_casadi.loads.obstacle_load import section_radii
@@ -318,7 +318,7 @@ class TouchingPairs:
         _, normal, _ = surface(touching.obstacle)(pose[:3])
         arm = -radius * normal
         if touching.of_body:
-            _, arm = support_of(self._body(touching.owner), normal, axes)
+            _, arm = support_of(self._nominal.discrete.bodies[touching.owner], normal, axes)
         # The touching point is one of the material.
         material = axes.T @ arm
         slide = along_surface(rate[:3] + ca.reshape(rate[3:], 3, 3) @ material, normal)
@@ -357,7 +357,7 @@ class TouchingPairs:
     def _radii(self, touching: TouchingSections) -> Matrix:
         """Radii of sections, or the radius of a body, k×1, m."""
         if touching.of_body:
-            return ca.DM(ball_radius(self._body(touching.owner)))
+            return ca.DM(self._nominal.discrete.bodies[touching.owner].ball_radius)
         rod = self.model.discrete.rods[touching.owner].properties
         return as_matrix(section_radii(rod, np.array(touching.places)))
 
@@ -421,8 +421,7 @@ class TouchingPairs:
         """Gaps of two rods at their places, 2×k, over the length, k×1."""
         own, other = (sections[0] for sections in self._rods_in_world(system, touching, places))
         radii = ca.sum1(self._radii_at(system, touching, places))
-        gaps: Matrix = (ca.sqrt(ca.sum1((own - other) ** 2)) - radii).T / self._length(touching)
-        return gaps
+        return (ca.sqrt(ca.sum1((own - other) ** 2)) - radii).T / self._length(touching)
 
     def _rods_in_world(self, system: System, touching: TouchingSections, places: Matrix) -> list[list[Matrix]]:
         """World positions of the sections of both rods, m, and their directors, 3×k each."""
@@ -442,11 +441,11 @@ class TouchingPairs:
 
     def _gaps_of(self, system: System, touching: TouchingSections) -> Matrix:
         """Gaps of sections, or of a body, from an obstacle, over the length, k×1."""
-        positions = self._positions(system, touching)
+        positions = self._in_world(system, touching)[0]
         seen = system.seen_from(touching.obstacle.body, positions)
         distances = distance_from(touching.obstacle).map(seen.shape[1])(seen).T
         if touching.of_body:
-            body = self._body(touching.owner)
+            body = self._nominal.discrete.bodies[touching.owner]
             _, normal, _ = surface(touching.obstacle)(seen)
             axes = system.body(touching.owner).rotation
             reach, _ = support_of(body, normal, system.turned_to(touching.obstacle.body, axes))
@@ -455,10 +454,6 @@ class TouchingPairs:
         gaps: Matrix = (distances - reach) / self._length(touching)
         return gaps
 
-    def _positions(self, system: System, touching: TouchingSections) -> Matrix:
-        """World positions of sections, or of a body, 3×k, m."""
-        return self._in_world(system, touching)[0]
-
     def _in_world(self, system: System, touching: TouchingSections) -> list[Matrix]:
         """World positions of sections, or of a body, m, and their three directors, 3×k each."""
         if touching.of_body:
@@ -466,10 +461,6 @@ class TouchingPairs:
             return [pose.position, *ca.horzsplit(ca.MX(pose.rotation))]
         weights = section_weights(self.model.discrete, touching.owner, touching.places)
         return system.sections(touching.owner, weights)
-
-    def _body(self, name: str) -> scenes.Body:
-        (body,) = [body for body in self._nominal.scene.bodies if body.name == name]
-        return body
 
     def _length(self, touching: TouchingSections) -> float:
         """Length by which gaps are divided, m."""
@@ -502,7 +493,7 @@ class TouchingPairs:
         nominal = self._nominal
         at = nominal.unloaded(), nominal.pack()
         written = expressions_of(nominal, ("x", "inputs"), "")
-        positions = ca.vec(ca.MX(self._positions(written.system, touching)))
+        positions = ca.vec(ca.MX(self._in_world(written.system, touching)[0]))
         slopes = ca.Function("slopes", list(written.symbols.values()), [ca.jacobian(positions, written["x"])])
         still = [np.zeros(nominal.size)] * 2
         steady = [np.zeros(nominal.inputs.size)] * 2

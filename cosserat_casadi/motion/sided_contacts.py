@@ -92,7 +92,7 @@ class SidedContacts:
     ) -> Restart:
         """Restart or start a motion; arguments as for :meth:`ExactContacts.restarted`."""
         size = self.model.size
-        before = Instant(at.time, at.x[:size], at.v[:size], at.a[:size])
+        before = at.first(size)
         count = len(self.sided.pairs)
         of_pair, of_contact = (guard, None) if guard is not None and guard < count else (None, guard)
         if of_contact is not None:

@@ -20,24 +20,12 @@ from cosserat_casadi.maths.calls import evaluated
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.checkpoint import Checkpoint, Strand
-from cosserat_casadi.motion.contact_checks import (
-    NOT_OF_RODS,
-    laid_down,
-    told_inside,
-    told_passage,
-    too_deep,
-)
+from cosserat_casadi.motion.contact_checks import NOT_OF_RODS, laid_down, told_inside, told_passage, too_deep
 from cosserat_casadi.motion.contact_guards import SAME_PLACE
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.energy_balance import energies_of
 from cosserat_casadi.motion.event_restart import LAID_DOWN, Restart
-from cosserat_casadi.motion.fall_of_errors import (
-    FallOfErrors,
-    RubbingFall,
-    SmoothFall,
-    hangs_on_rounding,
-    is_struck,
-)
+from cosserat_casadi.motion.fall_of_errors import FallOfErrors, RubbingFall, SmoothFall, hangs_on_rounding, is_struck
 from cosserat_casadi.motion.history import FreeFlight, History, free_flight, integrated
 from cosserat_casadi.motion.initial_velocity import with_velocities
 from cosserat_casadi.motion.motion_checks import check_simulation
@@ -305,9 +293,7 @@ class Simulator:
 
     def stepped(self, size: float) -> History:
         """Compute the motion with equal steps, s, by the integrator in the settings."""
-        method = radau(STAGES)
-        if self.simulation.integrator == "gauss":
-            method = gauss(STAGES)
+        method = gauss(STAGES) if self.simulation.integrator == "gauss" else radau(STAGES)
         tolerance = EXACT / self.displacements
         return self._integrated(method, StepSettings(tolerance=tolerance, size=size, newton=1.0))
 

@@ -67,8 +67,7 @@ def dense_jacobians(model: Model, name: str = JACOBIANS) -> ca.Function:
 
 def interpreted_derivatives(model: Model) -> ca.Function:
     """The function of :func:`dense_jacobians` for CasADi's virtual machine, written once."""
-    function: ca.Function = kept_with(model, "_dense_jacobians", lambda: dense_jacobians(model))
-    return function
+    return kept_with(model, "_dense_jacobians", lambda: dense_jacobians(model))
 
 
 def interpreted_jacobians(model: Model) -> Callable[..., list[FloatArray]]:

@@ -76,8 +76,7 @@ def stop_facings(model: Model) -> list[StopFacing]:
 
 def pair_facings(model: Model) -> list[PairFacing]:
     """All rigid pairs of a model, built for a motion: cables that may go slack, then stops."""
-    found: list[PairFacing] = kept_with(model, "_pair_facings", lambda: _pair_facings(model))
-    return found
+    return kept_with(model, "_pair_facings", lambda: _pair_facings(model))
 
 
 def struck_in_steps(model: Model) -> list[Facing]:

@@ -76,8 +76,7 @@ def watched_states(history: History, duration: float) -> WatchedStates:
 
 def function_of_paths(model: Model) -> ca.Function:
     """The function (x, inputs) ↦ points over the length, 3×points, and axes of sections, 3×(2 sections), as Paths."""
-    function: ca.Function = kept_with(model, "_paths", lambda: _written(model))
-    return function
+    return kept_with(model, "_paths", lambda: _written(model))
 
 
 def _written(model: Model) -> ca.Function:
@@ -143,10 +142,7 @@ def _lengths(model: Model, inputs: Matrix) -> dict[str, Matrix]:
 def _in_scalars(model: Model) -> ca.Function:
     """The function for CasADi's virtual machine, in scalars if possible, which take a quarter of the time."""
     function = function_of_paths(model)
-    scalars: ca.Function = kept_with(
-        model, "_paths_in_scalars", lambda: function if chooses(function) else function.expand()
-    )
-    return scalars
+    return kept_with(model, "_paths_in_scalars", lambda: function if chooses(function) else function.expand())
 
 
 def _places_between(model: Model, rod: str) -> list[float]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from enum import Enum
 from functools import cached_property
 
 import numpy as np
@@ -16,17 +15,12 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.checkpoint import Checkpoint
 from cosserat_casadi.motion.contact_record import MotionContact
 from cosserat_casadi.motion.event_restart import ContactEvent
-from cosserat_casadi.motion.pose_series import (
-    ActuatorStates,
-    Poses,
-    poses_of,
-    section_poses,
-    states_of,
-)
+from cosserat_casadi.motion.pose_series import ActuatorStates, Poses, poses_of, section_poses, states_of
+from cosserat_casadi.numerics.outcome import LabelledOutcome
 from cosserat_casadi.result import Result
 
 
-class MotionOutcome(Enum):
+class MotionOutcome(LabelledOutcome):
     """Every way a simulation can end; the value is the sentence that a user reads. Only COMPLETED is the whole motion.
 
     New members come last.
@@ -69,11 +63,6 @@ class MotionOutcome(Enum):
         "A motion of the discrete model was computed, but on its way a joint or a support is out of the plane that its "
         "rods bend in: keep it in the plane, or admit the other bending and torsion of the rods."
     )
-
-    @property
-    def label(self) -> str:
-        """Name of the outcome in result files."""
-        return self.name.lower()
 
 
 @dataclass(frozen=True)

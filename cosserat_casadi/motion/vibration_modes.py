@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from enum import Enum
 from math import ceil
 
 import numpy as np
@@ -36,6 +35,7 @@ from cosserat_casadi.motion.mode_shapes import NumberArray, RodShape, end_of_clu
 from cosserat_casadi.motion.relaxing_rows import branch_rows, integrated
 from cosserat_casadi.motion.small_motions import SmallMotions, quaternion_growth
 from cosserat_casadi.numerics.continuation import ContinuationSettings
+from cosserat_casadi.numerics.outcome import LabelledOutcome
 from cosserat_casadi.numerics.progress import Progress, Report, not_told
 from cosserat_casadi.result import Result
 from cosserat_casadi.spelling import named
@@ -68,7 +68,7 @@ ABOUT_REST = "They are vibrations about rest at the scene's values, without the 
 """Sentence on small motions of a scene whose inputs move: a rod with a rotating base has other frequencies."""
 
 
-class ModesOutcome(Enum):
+class ModesOutcome(LabelledOutcome):
     """Every way a search for modes can end; the value is the sentence."""
 
     RESOLVED = "Modes found: every frequency is known to the tolerance."
@@ -79,11 +79,6 @@ class ModesOutcome(Enum):
     NOT_ESTIMATED = "Modes of the discrete model: their distance from the modes of the rods is not estimated."
     NO_EQUILIBRIUM = "No modes: there is no equilibrium to vibrate about."
     MARGINAL_CONTACT = "No modes: a contact is closed without force, so that only one side of each vibration meets it."
-
-    @property
-    def label(self) -> str:
-        """Name of the outcome in result files."""
-        return self.name.lower()
 
 
 @dataclass(frozen=True)

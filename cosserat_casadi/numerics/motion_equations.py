@@ -34,6 +34,10 @@ class Instant:
     v: FloatArray
     a: FloatArray
 
+    def first(self, size: int) -> Instant:
+        """The state of the first unknowns, without the forces of contacts that are appended to them."""
+        return Instant(self.time, self.x[:size], self.v[:size], self.a[:size])
+
 
 @dataclass(frozen=True)
 class Linearisation:

@@ -5,7 +5,16 @@ from __future__ import annotations
 from enum import Enum
 
 
-class Outcome(Enum):
+class LabelledOutcome(Enum):
+    """Outcomes of a kind of work; the value of each is the sentence for the user."""
+
+    @property
+    def label(self) -> str:
+        """Name of the outcome in result files."""
+        return self.name.lower()
+
+
+class Outcome(LabelledOutcome):
     """Outcomes of a solve. Only CONVERGED comes with a reliable result.
 
     The order gives the numbers in C and in the tables of sweeps: new members come last, but before the outcomes of
@@ -49,8 +58,3 @@ class Outcome(Enum):
         "A translation is below zero or above the length of its tube, or no tube stands out of the plate: nothing was "
         "computed."
     )
-
-    @property
-    def label(self) -> str:
-        """Name of the outcome in result files."""
-        return self.name.lower()

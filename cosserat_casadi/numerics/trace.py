@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from enum import Enum
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arclength import ArcPoint, Curve
 from cosserat_casadi.numerics.events import Arc, Event, events_between
 from cosserat_casadi.numerics.neutral import direction_in
+from cosserat_casadi.numerics.outcome import LabelledOutcome
 from cosserat_casadi.numerics.progress import Progress
 
 GROWTH = 1.5
@@ -36,7 +36,7 @@ Guard = Callable[[Arc, ArcPoint], ArcPoint | None]
 """A test that may end a step early."""
 
 
-class PathOutcome(Enum):
+class PathOutcome(LabelledOutcome):
     """Outcomes of a path. Only CONVERGED has reached load factor 1."""
 
     CONVERGED = "The path reached its end, factor 1."
@@ -64,11 +64,6 @@ class PathOutcome(Enum):
         "The rod cannot follow the path of the discrete model: a joint or a support leaves the plane that its rods "
         "bend in."
     )
-
-    @property
-    def label(self) -> str:
-        """Name of the outcome in result files."""
-        return self.name.lower()
 
 
 @dataclass

@@ -16,7 +16,6 @@ from cosserat_casadi.codegen.memory import largest_room
 from cosserat_casadi.codegen.names import Names, scene_names
 from cosserat_casadi.compiling.texts import render
 from cosserat_casadi.equilibrium.contact.contact_state import Touch
-from cosserat_casadi.equilibrium.contact.gaps import ball_radius
 from cosserat_casadi.maths.numbers import as_vector
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
@@ -104,7 +103,7 @@ def _touching_points(own: ArrangementKernels, touch: Touch) -> Matrix:
     if touch.of_body:
         (body,) = [body for body in system.discrete.scene.bodies if body.name == touch.owner]
         frame = system.frame(FrameName("body", body.name))
-        return ca.densify(frame.position - ball_radius(body) * own.normal_of_body(touch))
+        return ca.densify(frame.position - body.ball_radius * own.normal_of_body(touch))
     shares = np.linspace(0.0, 1.0, ALONG_LINE if touch.is_line else 1)
     X = as_vector([touch.start + (touch.end - touch.start) * share for share in shares.tolist()])
     position, _ = sections_of(system, touch.owner, X)

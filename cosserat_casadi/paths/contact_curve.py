@@ -175,9 +175,7 @@ class Arrangement:
             rate=lambda y, t: self.rate(scale * y, t),
             start=self.near / scale,
         )
-        monitor = DETERMINANT
-        if self.potential:
-            monitor = Monitor(self._eigenvalues, feels_limits=True)
+        monitor = Monitor(self._eigenvalues, feels_limits=True) if self.potential else DETERMINANT
         # Solved to the last digit, since a small residual does not determine the forces of a short line.
         settings = replace(self.settings, aim=0.0)
         return Curve(path, monitor, settings, rows, SINGULAR)

@@ -189,10 +189,10 @@ class RubbingArrangement(Arrangement):
         all_slip = sign(None) if limiting else 0.0
         return next((number for number in limiting if sign(number) != all_slip), None)
 
-    def _friction_entries(self, number: int, count: int = 1) -> slice:
-        """Entries in z of the friction of contacts that rub, from one of them on."""
+    def _friction_entries(self, number: int) -> slice:
+        """Entries in z of the friction of a contact that rubs."""
         first = self.equations.nominal.model.size + self.equations.pushes + AXES * number
-        return slice(first, first + AXES * count)
+        return slice(first, first + AXES)
 
     def is_open(self, point: ArcPoint) -> bool:
         """Whether friction along the rods at a point has a part without effect, which so is not determined."""

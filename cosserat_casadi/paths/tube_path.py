@@ -272,9 +272,7 @@ def _next_stable(path: TubePath, inputs: FloatArray, event: PathEvent) -> TubeSo
         before, after = beyond[index - 1], beyond[index]
         if before * after > 0.0 or not solutions[index].stable:
             continue
-        share = 0.0
-        if after != before:
-            share = -before / (after - before)
+        share = 0.0 if after == before else -before / (after - before)
         start = solutions[index - 1].x + share * (solutions[index].x - solutions[index - 1].x)
         reached = solution_near(path.model, inputs, start)
         if reached.converged and reached.stable:

@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.contact.gaps import ball_radius
 from cosserat_casadi.equilibrium.solution import SolvedPoses, rotations
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import column_indices
@@ -164,12 +163,11 @@ def _mark_contacts(canvas: Canvas, motion: Motion, rows: list[int]) -> None:
 def _touching_point(motion: Motion, contact: MotionContact, row: int) -> FloatArray:
     """Centre of the touching section, or contact point of the ball of a body, shape (1, 3), m."""
     if not contact.of_body:
-        section: FloatArray = motion.section(contact.owner, [contact.at]).position[row]
-        return section
+        return np.asarray(motion.section(contact.owner, [contact.at]).position[row])
     (body,) = [body for body in motion.model.scene.bodies if body.name == contact.owner]
     normal = contact.force / np.linalg.norm(contact.force)
     centre: FloatArray = motion.body(body.name).position[row : row + 1]
-    return centre - ball_radius(body) * normal
+    return centre - body.ball_radius * normal
 
 
 def shown_rows(times: FloatArray) -> list[int]:

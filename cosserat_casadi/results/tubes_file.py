@@ -91,9 +91,7 @@ def _point(solution: TubeSolution) -> dict[str, Any]:
 
 def _event(event: TubeEvent) -> dict[str, Any]:
     """Entry of an event of a path."""
-    snaps_to = None
-    if event.snaps_to is not None:
-        snaps_to = _point(event.snaps_to)
+    snaps_to = None if event.snaps_to is None else _point(event.snaps_to)
     return {
         "kind": event.kind,
         "value": event.value,

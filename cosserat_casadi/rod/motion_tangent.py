@@ -208,8 +208,8 @@ class MotionTangent:
     @cached_property
     def section_rotation(self) -> Jet:
         """δθ at all nodes with its rates, 3M×columns, rad."""
-        nodes = self.tangent.rod.grid.size
-        none = ca.DM(3 * nodes, self._other_count)
+        # Coordinates that stretch turn nothing.
+        none = ca.DM(3 * self.tangent.rod.grid.size, 0 if self._stretch is None else self._stretch.mass.shape[1])
         orders = [ca.horzcat(self._at_all_nodes(order), none) for order in self.rotation.orders]
         return Jet(*[self._ordered_columns(order) for order in orders])
 
@@ -224,11 +224,6 @@ class MotionTangent:
         others = [self._stretch.mass, self._stretch.damping / 2, self._stretch.stiffness]
         orders = [ca.horzcat(one, self._without_shift_rows(other)) for one, other in zip(turning, others, strict=True)]
         return Jet(*[self._ordered_columns(order) for order in orders])
-
-    @property
-    def _other_count(self) -> int:
-        """Number of columns of coordinates that turn nothing."""
-        return 0 if self._stretch is None else int(self._stretch.mass.shape[1])
 
     def _at_all_nodes(self, rows: Matrix) -> Matrix:
         """Rows of all nodes from rows of the nodes that turn, 3M×k; rows of other nodes are zero."""

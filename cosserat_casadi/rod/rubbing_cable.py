@@ -79,8 +79,7 @@ class RubbingCable(RoutedCable):
     @cached_property
     def shares(self) -> Matrix:
         """Tension along the course over the tension at its base, exp(−μ p φ), 1×k."""
-        shares: Matrix = ca.exp(-self.friction * self.turn)
-        return shares
+        return ca.exp(-self.friction * self.turn)
 
     @cached_property
     def turn(self) -> Matrix:

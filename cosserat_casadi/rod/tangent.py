@@ -185,8 +185,7 @@ class Tangent:
 
     def _in_intervals(self, stacked: Matrix) -> Matrix:
         """A stacked column as a field on the intervals."""
-        field: Matrix = unstack(stacked, stacked.shape[0] // self.intervals)
-        return field
+        return unstack(stacked, stacked.shape[0] // self.intervals)
 
     @cached_property
     def section_rotation(self) -> Matrix:
@@ -501,8 +500,7 @@ class Tangent:
         """Sums of stacked vectors at the nodes over each distinct section beyond the base, (3·intervals)×3M."""
         section_of_node = self.rod.grid.section_of_node
         sections = np.eye(self.intervals + 1)[1:, section_of_node]
-        gather: ca.DM = ca.kron(ca.DM.eye(3), sparse(sections))
-        return gather
+        return ca.kron(ca.DM.eye(3), sparse(sections))
 
 
 def _mirrored(matrix: Matrix) -> Matrix:

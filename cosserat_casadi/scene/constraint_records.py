@@ -217,6 +217,12 @@ mass = 0.1
         return "[" in self.name
 
     @property
+    def ball_radius(self) -> float:
+        """Radius of a body that an obstacle names, m."""
+        assert self.radius is not None, "the rules of the scene ask for one"
+        return self.radius
+
+    @property
     def inertia_matrix(self) -> FloatArray:
         """Inertia about the centre of mass in the axes of the body, shape (3, 3), kg m²."""
         return _matrix(self.inertia)

@@ -32,12 +32,6 @@ class LoadRecord(Entry):
 LOADS: Family[LoadRecord] = Family("loads")
 """Kinds of loads."""
 
-WRENCH = {
-    "force": InputField("N", 3, axes="frame"),
-    "moment": InputField("N m", 3, axes="frame"),
-}
-"""Inputs of a wrench at a point."""
-
 
 def force_or_moment(given: Table) -> Iterator[Fault]:
     """A wrench has a force or a moment."""
@@ -83,7 +77,21 @@ acceleration = [0, 0, -9.81]
         return self.acts_on_all if self.bodies is None else body in self.bodies
 
 
-class SectionWrench(LoadRecord):
+class WrenchRecord(LoadRecord):
+    """A force and a moment, at one point unless a kind says otherwise."""
+
+    inputs: ClassVar[Mapping[str, InputField]] = {
+        "force": InputField("N", 3, axes="frame"),
+        "moment": InputField("N m", 3, axes="frame"),
+    }
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """A wrench has a force or a moment."""
+        yield from force_or_moment(given)
+
+
+class SectionWrench(WrenchRecord):
     """A force and a moment on sections of one rod."""
 
     references: ClassVar[Mapping[str, str]] = {"rod": "rods"}
@@ -92,11 +100,6 @@ class SectionWrench(LoadRecord):
     frame: Literal["world", "body"] = Field(
         "world", description="axes of force and moment: 'world' is a dead load, 'body' follows the section"
     )
-
-    @classmethod
-    def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """A wrench has a force or a moment."""
-        yield from force_or_moment(given)
 
 
 @LOADS.register
@@ -110,8 +113,6 @@ kind = "tip_wrench"
 rod = "finger"
 force = [0.1, 0, 0]
 """
-
-    inputs: ClassVar[Mapping[str, InputField]] = WRENCH
 
     kind: Literal["tip_wrench"] = Field(description="force and moment on the tip")
     force: Vector = Field((0.0, 0.0, 0.0), description="force, N")
@@ -131,8 +132,6 @@ at = 0.5
 moment = [0, 0.01, 0]
 frame = "body"
 """
-
-    inputs: ClassVar[Mapping[str, InputField]] = WRENCH
 
     kind: Literal["point_wrench"] = Field(description="force and moment on one section")
     at: Annotated[
@@ -173,7 +172,7 @@ force = [{ base = 0.0, tip = 0.4 }, 0, 0]     # N/m
 
 
 @LOADS.register
-class BodyWrench(LoadRecord):
+class BodyWrench(WrenchRecord):
     """A force and a moment on a rigid body."""
 
     example: ClassVar[str] = """\
@@ -185,7 +184,6 @@ force = [0, 0, -1.0]
 position = [0.05, 0, 0]
 """
 
-    inputs: ClassVar[Mapping[str, InputField]] = WRENCH
     references: ClassVar[Mapping[str, str]] = {"body": "bodies"}
 
     kind: Literal["body_wrench"] = Field(description="force and moment on a body")
@@ -196,8 +194,3 @@ position = [0.05, 0, 0]
     frame: Literal["world", "body"] = Field(
         "world", description="axes of force and moment: 'world' is a dead load, 'body' turns with the body"
     )
-
-    @classmethod
-    def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """A wrench has a force or a moment."""
-        yield from force_or_moment(given)

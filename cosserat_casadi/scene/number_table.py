@@ -26,7 +26,8 @@ def read_numbers(path: Path) -> tuple[list[str], FloatArray, list[int], list[Pro
     Raises:
         SceneError: the file cannot be read, or has no row.
     """
-    header, rows = read_rows(path)
+    header, later = begun_rows(path)
+    rows = list(later)
     problems = [Problem(str(path), f"has the column {column} twice") for column in repeated(header)]
     numbers = np.full((len(rows), len(header)), np.nan)
     for values, (line, row) in zip(numbers, rows, strict=True):
@@ -34,18 +35,8 @@ def read_numbers(path: Path) -> tuple[list[str], FloatArray, list[int], list[Pro
     return header, numbers, [line for line, _ in rows], problems
 
 
-def read_rows(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
-    """Header of a CSV file, and the line and the cells of each row that is not empty.
-
-    Raises:
-        SceneError: the file cannot be read, or has no row.
-    """
-    header, rows = begun_rows(path)
-    return header, list(rows)
-
-
 def begun_rows(path: Path) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
-    """Header and rows of a table; rows are read one after the other, since a file may be larger than memory.
+    """Header of a table, and line and cells of each filled row, read one by one: a file may be larger than memory.
 
     Raises:
         SceneError: the file cannot be read, which may show only at a later row, or has no row.

@@ -23,6 +23,7 @@ from cosserat_casadi.scene.faults import Path as FaultPath
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.input_rules import owners_of
 from cosserat_casadi.scene.joint_ends import place_joints_by_their_ends
+from cosserat_casadi.scene.load_records import Gravity
 from cosserat_casadi.scene.messages import problem_of, problems_of
 from cosserat_casadi.scene.motion_records import InputMotion
 from cosserat_casadi.scene.obstacle_records import SMOOTH_KEYS
@@ -38,11 +39,17 @@ from cosserat_casadi.scene.writing import scene_tables
 
 LOG = logging.getLogger(__name__)
 
-SOFTEST = 1e3
-"""Young's modulus, Pa, below the modulus of any rod: soft gels have some thousands, 60 GPa written as 60 has less."""
+OF_MATERIALS = (
+    ("youngs_modulus", "Pa", 1e3, "softer than any rod", 1e13, "stiffer than diamond", "60 GPa are 60e9"),
+    ("density", "kg/m³", 10.0, "lighter than foam", 1e5, "heavier than any metal", "is it in kg/m³?"),
+)
+"""Keys of materials, their units, least and largest numbers of real rods with words for others, and a remedy.
 
-LIGHTEST = 10.0
-"""Density, kg/m³, below the density of foams: 6450 kg/m³ written as 6.45 g/cm³ is lighter."""
+Soft gels have some thousand Pa, diamond 1.2e12 Pa; osmium has 22.6e3 kg/m³.
+"""
+
+STRONGEST = 1e5
+"""Acceleration of gravity, m/s², ten thousand times that of the earth."""
 
 ANGLES = frozenset({"angle", "rest", "lower_stop", "upper_stop", "rotation"})
 """Keys of angles of hinges and of drives of tubes."""
@@ -74,7 +81,8 @@ def read_scene(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> S
     file = Path(path)
     tables = parsed(file_text(file))
     scene = _scene(tables, overrides, file.parent)
-    note_unlikely_units(scene)
+    for note in _unlikely_numbers(scene):
+        LOG.warning("%s", note)
     return scene
 
 
@@ -254,33 +262,31 @@ def _component(value: Any, degrees: int) -> Any:
     return [*listed, *[0.0] * (degrees - len(listed))]
 
 
-def note_unlikely_units(scene: Scene) -> None:
-    """Warn of each number that is probably in another unit; a rod with all numbers near one counts as dimensionless."""
-    for note in _notes(scene):
-        LOG.warning("%s", note)
-
-
-def _notes(scene: Scene) -> Iterator[str]:
+def _unlikely_numbers(scene: Scene) -> Iterator[str]:
+    """Sentences on numbers that are probably in another unit; a rod with all of them near one is dimensionless."""
     tubes = [(f"tubes[{i}]", tube) for i, tube in enumerate(scene.tubes)]
     elastic: list[tuple[str, Rod | Tube]] = [(f"rods[{i}]", rod) for i, rod in enumerate(scene.rods)]
     for where, record in [*elastic, *tubes]:
         lengths = _numbers(record, {"length", "straight", "curved"})
         sizes = _sizes(record.section)
-        material = _numbers(record.material, {"youngs_modulus", "density"})
+        material = _numbers(record.material, {key for key, *_ in OF_MATERIALS})
         numbers = (lengths | sizes | material).values()
         if all(1 / NEAR_ONE <= number <= NEAR_ONE for number in numbers):
             continue
-        modulus = material.get("youngs_modulus", math.inf)
-        if modulus < SOFTEST:
-            yield f"{where}.material.youngs_modulus: {modulus:g} Pa is softer than any rod (60 GPa are 60e9)"
-        density = material.get("density", math.inf)
-        if density < LIGHTEST:
-            yield f"{where}.material.density: {density:g} kg/m³ is lighter than foam (is it in kg/m³?)"
+        for key, unit, least, below_it, most, above_it, remedy in OF_MATERIALS:
+            number = material.get(key)
+            if number is not None and not least <= number <= most:
+                words = below_it if number < least else above_it
+                yield f"{where}.material.{key}: {number:g} {unit} is {words} ({remedy})"
         # The value of a length that is a parameter is unknown.
         longest = sum(lengths.values()) or math.inf
         for key, size in sizes.items():
             if size > longest:
                 yield f"{where}.section.{key}: {size:g} m is more than the length of {longest:g} m (are both in m?)"
+    for i, load in enumerate(scene.loads):
+        if isinstance(load, Gravity) and math.hypot(*load.acceleration) > STRONGEST:
+            strength = math.hypot(*load.acceleration)
+            yield f"loads[{i}].acceleration: {strength:g} m/s² is above any gravity (is it in m/s²?)"
     hinges = [(f"joints[{i}]", joint) for i, joint in enumerate(scene.joints) if joint.kind == "revolute"]
     for where, turned in (*hinges, *tubes):
         for key, angle in _numbers(turned, ANGLES).items():

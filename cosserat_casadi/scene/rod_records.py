@@ -62,10 +62,13 @@ IN_PLANE = {1, 3, 5}
 SHEAR_AND_EXTENSION = {3, 4, 5}
 """Indices of the strains Γ; a rod that admits no such strain keeps its length."""
 
+NO_STRAIN = "name the strains that may change, such as bending_x; a body of [[bodies]] is rigid"
+"""Remedy for a rod that admits no strain."""
+
 StrainName = Literal["bending_x", "bending_y", "torsion", "shear_x", "shear_y", "extension"]
 StrainChoice = Annotated[
     Annotated[Literal["planar", "kirchhoff", "reissner"], SINGLE]
-    | Annotated[tuple[StrainName, ...], NotEmpty(), AfterValidator(without_repetition), SEVERAL],
+    | Annotated[tuple[StrainName, ...], NotEmpty(NO_STRAIN), AfterValidator(without_repetition), SEVERAL],
     BY_LENGTH,
 ]
 

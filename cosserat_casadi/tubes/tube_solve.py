@@ -226,9 +226,7 @@ def solution_at(
         found: whether the unknowns are an equilibrium.
         iterations: number of Newton steps of the search.
     """
-    outcome = Outcome.LOAD_STALLED
-    if found:
-        outcome = Outcome.CONVERGED
+    outcome = Outcome.CONVERGED if found else Outcome.LOAD_STALLED
     residual = model.residual(x, inputs).full()
     missed = float(np.abs(residual).max())
     return TubeSolution(model, inputs, x, outcome, outcome.value, missed, iterations)

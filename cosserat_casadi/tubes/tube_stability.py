@@ -61,9 +61,7 @@ def stability_of(model: TubeFunctions, x: FloatArray, inputs: FloatArray) -> Tub
     """
     jacobian = model.jacobian(x, inputs)[0].full()
     singular = np.linalg.svd(jacobian, compute_uv=False)
-    falling = None
-    if model.robot.has_energy:
-        falling = _falling(model, model.varied(x, inputs), inputs)
+    falling = _falling(model, model.varied(x, inputs), inputs) if model.robot.has_energy else None
     return TubeStability(
         falling=falling,
         neutral=bool(singular[-1] <= NEUTRAL * singular[0]),

@@ -362,6 +362,11 @@ def assert_plain(error):
         assert word not in str(error)
 
 
+def test_a_rod_without_strains_has_a_remedy() -> None:
+    (problem,) = problems(scene(rods=rod(strain="[]")))
+    assert problem.remedy.startswith("name the strains that may change, such as bending_x")
+
+
 @pytest.mark.parametrize(("text", "where", "piece"), [bad[1:] for bad in BAD], ids=[bad[0] for bad in BAD])
 def test_a_bad_scene_is_refused_in_one_place_and_plain_words(text, where, piece):
     with pytest.raises(SceneError) as caught:

@@ -436,7 +436,7 @@ def test_unstable_robots_are_told(tmp_path: Path) -> None:
         ("tune tubes.toml --output out.toml --range inner.rotation=0:1", "works on rods"),
         ("view tubes.toml --range inner.rotation=0:1", "works on rods"),
         ("path tubes.toml --input inner.rotation --to 3 --branch --output out.json", "needs a scene of rods"),
-        ("path tubes.toml --input inner.turn --to 3 --output out.json", "is no input"),
+        ("path tubes.toml --input inner.turn --to 3 --output out.json", "--input: 'inner.turn' is no input"),
         ("path tubes.toml --input inner.rotation --to [3,4] --output out.json", "must be one number"),
         ("path tubes.toml --input inner.rotation --to 2.0 --output out.json", "where the path begins"),
         ("path tubes.toml --input inner.translation --to 1.0 --output out.json", "to the length of the tube"),

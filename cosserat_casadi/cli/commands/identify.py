@@ -12,10 +12,7 @@ from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_files, read_checked
 from cosserat_casadi.cli.progress import solve_display
 from cosserat_casadi.cli.reports.format import print_warnings
-from cosserat_casadi.cli.reports.identification import (
-    print_identification,
-    print_refused_scene,
-)
+from cosserat_casadi.cli.reports.identification import print_identification, print_refused_scene
 from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically

@@ -67,7 +67,7 @@ def inverse(
     check_files({"--output": output, "--plot": plot}, scene, settings, problems, table, output_suffix=suffix)
     refuse(problems)
     if table is not None:
-        _check_table(output, plot)
+        _check_table(table, output, plot)
         _inverse_of_table(scene, settings, table, output, stable, unstable)
         return
     with solve_display("Finding inputs") as display:
@@ -83,9 +83,11 @@ def inverse(
         raise typer.Exit(NOT_FOUND)
 
 
-def _check_table(output: Path | None, plot: Path | None) -> None:
-    """Refuse options that do not apply to a table, and missing ones that it needs."""
+def _check_table(table: Path, output: Path | None, plot: Path | None) -> None:
+    """Refuse a table that does not exist, options that do not apply to a table, and missing ones that it needs."""
     problems = []
+    if not table.exists():
+        problems.append(Problem("--table", f"{table} does not exist", "name a CSV file with the columns x, y, z"))
     if output is None:
         problems.append(Problem("--output", "missing", "name the CSV file for the results of the table"))
     if plot is not None:

@@ -27,7 +27,7 @@ from cosserat_casadi.paths.path_refinement import follow
 from cosserat_casadi.paths.tube_path import TubePath, usual_limits
 from cosserat_casadi.results.presentation import write_all
 from cosserat_casadi.scene import Scene, read_scene
-from cosserat_casadi.spelling import counted
+from cosserat_casadi.spelling import closest, counted
 from cosserat_casadi.tubes.robot import robot_of
 
 MOST_POINTS = 1000
@@ -213,17 +213,15 @@ def _check_name_and_size(scene: Scene, name: str, value: FloatArray | None) -> N
     Args:
         scene: the scene.
         name: the input.
-        value: its value; None where it is refused already, and the name alone is left to check.
+        value: its value; None where it is refused already.
     """
-    if scene.tubes:
-        robot_of(scene).input_index(name)
-        return
     # Building also refuses overconstraining inputs, which reading cannot detect.
-    layout = build(scene).inputs
-    if value is None:
-        defaults = dict(zip(layout.names, layout.defaults, strict=True))
-        value = defaults.get(name, np.zeros(0))
-    layout.pack({name: value})
+    layout = None if scene.tubes else build(scene).inputs
+    names = list(robot_of(scene).columns) if layout is None else layout.names
+    if name not in names:
+        raise SceneError(Problem("--input", f"{name!r} is no input of this scene", closest(name, names)))
+    if layout is not None and value is not None:
+        layout.pack({name: value})
 
 
 def _vector(text: str) -> FloatArray:

@@ -15,14 +15,7 @@ from cosserat_casadi.accuracy.common_modes import Values
 from cosserat_casadi.accuracy.fixing import unfixed
 from cosserat_casadi.accuracy.ranges import Given
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import (
-    Ranges,
-    SceneFile,
-    Settings,
-    asked_cases,
-    asked_ranges,
-    check_files,
-)
+from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_cases, asked_ranges, check_files
 from cosserat_casadi.cli.progress import count_display
 from cosserat_casadi.cli.reports.model import discretisation_table, print_choice
 from cosserat_casadi.cli.terminal import Console

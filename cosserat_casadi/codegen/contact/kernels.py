@@ -168,8 +168,7 @@ class ArrangementKernels:
         least: dict[str, list[Matrix]] = {"path": [], "plane": [], "law": []}
         for margin, value in strain_margins(system).items():
             least.get(margin.kind, least["law"]).append(value)
-        indices: Matrix = ca.vertcat(index, *(ca.mmin(ca.vertcat(1, *own)) for own in least.values()))
-        return indices
+        return ca.vertcat(index, *(ca.mmin(ca.vertcat(1, *own)) for own in least.values()))
 
     def _tips(self) -> Matrix:
         """Position and quaternion of the tip of every rod, then of every body, stacked."""

@@ -186,13 +186,18 @@ def _most_touches(faces: Sequence[Facing]) -> int:
     return min(MOST_TOUCHES, sum(1 if own.of_body else max(FEWEST_TOUCHES, len(own.laid_at)) for own in faces))
 
 
+def starts_unloaded(model: Model) -> bool:
+    """Whether the motion begins in the unloaded shape, as it does with free bases, which have no equilibrium."""
+    return any(rod.base.free for rod in model.scene.rods) or model.scene.starts_unloaded
+
+
 def start_shape(model: Model) -> FloatArray:
     """Solve for the unknowns at the start of the scene's motion, at rest, with the scene's parameters, shape (size,).
 
     Raises:
         ExportError: the scene begins in an equilibrium, and none is found.
     """
-    if any(rod.base.free for rod in model.scene.rods) or model.scene.starts_unloaded:
+    if starts_unloaded(model):
         return unloaded_start(model.at(), model.pack()).x
     start = equilibrium_start(model.at(), model.pack())
     if not start.found:

@@ -7,16 +7,7 @@ from cosserat_casadi.codegen.contact.checks import check_contact
 from cosserat_casadi.codegen.contact.sources import contact_files
 from cosserat_casadi.codegen.contact.tables import Tables
 from cosserat_casadi.codegen.names import Names, scene_names
-from cosserat_casadi.codegen.rows import (
-    CONTACT,
-    JUDGED,
-    NAME,
-    POSE,
-    RowLibrary,
-    judged_words,
-    row_results,
-    to_compile,
-)
+from cosserat_casadi.codegen.rows import CONTACT, JUDGED, NAME, POSE, RowLibrary, judged_words, row_results, to_compile
 from cosserat_casadi.compiling.texts import render
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.contact.gaps import pairs, rod_pairs

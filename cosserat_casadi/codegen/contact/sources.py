@@ -9,12 +9,7 @@ import numpy as np
 
 from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.codegen.contact.arrangements import Chosen
-from cosserat_casadi.codegen.contact.kernels import (
-    RICHER_WORDS,
-    ArrangementKernels,
-    distance_kernels,
-    words_of,
-)
+from cosserat_casadi.codegen.contact.kernels import RICHER_WORDS, ArrangementKernels, distance_kernels, words_of
 from cosserat_casadi.codegen.contact.tables import Tables, described
 from cosserat_casadi.codegen.error_sources import BLINDNESS, blindness_words
 from cosserat_casadi.codegen.kernel_files import derivative_source, kernel_sources

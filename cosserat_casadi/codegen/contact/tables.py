@@ -15,7 +15,7 @@ from cosserat_casadi.compiling.c_tables import numbers, reals, record, record_ta
 from cosserat_casadi.equilibrium.blindness import TurnedElements
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations
 from cosserat_casadi.equilibrium.contact.contact_state import TIP, Touch, is_sought
-from cosserat_casadi.equilibrium.contact.gaps import ball_radius, body_pairs, pairs, rod_pairs
+from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs, rod_pairs
 from cosserat_casadi.equilibrium.stability import variations
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev
@@ -206,7 +206,7 @@ class Tables:
             if self.chosen.judges_stability:
                 fields["energy"] = repr(float(rod.energy_unit / self._largest_unit))
             entries.append(record({"rank": ranks.index(name), **fields}))
-        radii_of_bodies = {body.name: ball_radius(body) for body in self.chosen.scene.bodies}
+        radii_of_bodies = {body.name: body.ball_radius for body in self.chosen.scene.bodies}
         for name in bodies:
             fields = {
                 "rank": ranks.index(name),

@@ -29,12 +29,7 @@ from cosserat_casadi.codegen.library import (
     solver_constants,
     title_words,
 )
-from cosserat_casadi.codegen.manifest import (
-    TUBES,
-    accuracy_entries,
-    head_entries,
-    with_manifest,
-)
+from cosserat_casadi.codegen.manifest import TUBES, accuracy_entries, head_entries, with_manifest
 from cosserat_casadi.codegen.names import Names, scene_names
 from cosserat_casadi.codegen.parameter_sources import parameter_words
 from cosserat_casadi.codegen.parameters import given_size, parameter_rate, with_parameters_behind_inputs
@@ -172,9 +167,7 @@ def _words(
 
 
 def _accuracy_note(model: TubeFunctions, error_estimate: float | None) -> str:
-    estimate = "was not estimated"
-    if error_estimate is not None:
-        estimate = f"is {error_estimate:.1e}"
+    estimate = "was not estimated" if error_estimate is None else f"is {error_estimate:.1e}"
     return (
         "Each piece between ends of tubes, beginnings of curved parts and places of forces has "
         f"{model.steps} steps. The estimated error of the tips at the scene's own inputs {estimate}; "

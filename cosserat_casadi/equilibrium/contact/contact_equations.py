@@ -19,12 +19,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.contact_state import (
-    SHORTEST,
-    ContactState,
-    contact_loads,
-    with_contacts,
-)
+from cosserat_casadi.equilibrium.contact.contact_state import SHORTEST, ContactState, contact_loads, with_contacts
 from cosserat_casadi.equilibrium.contact.gap_rows import force_widths, gap_rows
 from cosserat_casadi.equilibrium.contact.gaps import obstacle_of
 from cosserat_casadi.equilibrium.contact.shape_projection import projected

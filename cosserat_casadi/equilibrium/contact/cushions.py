@@ -22,7 +22,6 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.contact_state import TIP, ContactState, Touch, at_end
 from cosserat_casadi.equilibrium.contact.gaps import (
     DENSE,
-    ball_radius,
     body_gap,
     body_pairs,
     gap_along,
@@ -232,7 +231,7 @@ def _cushions_of_bodies(scene: scenes.Scene, factor: float) -> Iterator[Penetrat
         holding = [records[joint.rod] for joint in scene.joints if joint.rod and joint.body == body.name] or scene.rods
         unit = max(_unit(rod) * rod.length for rod in holding)
         length = max(rod.length for rod in holding)
-        radius = ball_radius(body)
+        radius = body.ball_radius
         thinness = length / (obstacle.thickness / 2 + radius)
         yield Penetration.model_construct(
             name=f"cushion of body {number}",

@@ -112,8 +112,7 @@ def centres_apart(system: System, touch: Touch) -> Matrix:
     """Vector from the touching section of the second of two rods to that of the first, world axes, 3×1, m."""
     own, other = (RodSurface(system, rod) for rod in touch.rods)
     assert touch.other is not None, "two rods"
-    apart: Matrix = own.centre(touch.start) - other.centre(touch.other)
-    return apart
+    return own.centre(touch.start) - other.centre(touch.other)
 
 
 @dataclass(frozen=True)

@@ -107,7 +107,7 @@ def support_of(body: scenes.Body, normal: Matrix, rotation: Matrix) -> tuple[Mat
         normal: normal of the obstacle, 3×1.
         rotation: rotation of the body, 3×3.
     """
-    radius = ball_radius(body)
+    radius = body.ball_radius
     if body.thickness is None:
         return radius, -radius * normal
     return disk_reach(normal, rotation[:, 2], radius, body.thickness)
@@ -115,18 +115,12 @@ def support_of(body: scenes.Body, normal: Matrix, rotation: Matrix) -> tuple[Mat
 
 def inner_radius(body: scenes.Body) -> float:
     """Radius of the largest ball about the origin of a body that is inside it, m."""
-    return ball_radius(body) if body.thickness is None else min(ball_radius(body), body.thickness / 2)
+    return body.ball_radius if body.thickness is None else min(body.ball_radius, body.thickness / 2)
 
 
 def ball_gaps(obstacle: scenes.ObstacleRecord, radius: float, positions: FloatArray) -> FloatArray:
     """Distances of a ball at positions (k, 3) from an obstacle, shape (k,), m."""
     return np.asarray(distances(obstacle, positions) - radius)
-
-
-def ball_radius(body: scenes.Body) -> float:
-    """Radius of a body that an obstacle names, m."""
-    assert body.radius is not None, "the rules of the scene ask for one"
-    return body.radius
 
 
 def body_normal(solution: Solution, body: str, obstacle: scenes.ObstacleRecord) -> FloatArray:
@@ -166,9 +160,9 @@ def touching_points(solution: Solution, contact: Contact, along: int) -> FloatAr
         normal = body_normal(solution, body.name, obstacle)
         pose = solution.body(body.name)
         if body.thickness is None:
-            return np.asarray(pose.position[None] - ball_radius(body) * normal)
+            return np.asarray(pose.position[None] - body.ball_radius * normal)
         axis = ca.DM(pose.rotation[:, 2])
-        _, touching = disk_reach(ca.DM(normal), axis, ball_radius(body), body.thickness)
+        _, touching = disk_reach(ca.DM(normal), axis, body.ball_radius, body.thickness)
         return np.asarray(pose.position[None] + ca.DM(touching).full().T)
     count = along if contact.start < contact.end else 1
     X = np.linspace(contact.start, contact.end, count)
