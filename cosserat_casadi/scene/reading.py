@@ -47,8 +47,14 @@ LIGHTEST = 10.0
 ANGLES = frozenset({"angle", "rest", "lower_stop", "upper_stop", "rotation"})
 """Keys of angles of hinges and of drives of tubes."""
 
+TURNS = frozenset({"twist", "angles", "rotation_vector"})
+"""Keys of angles of orientations, which the records turn into quaternions."""
+
 FURTHEST = 4 * math.pi
-"""Angle, rad, above the angles of most hinges and drives: 15° written as 15 exceeds it."""
+"""Angle, rad, above the angles of most hinges, drives and orientations: 15° written as 15 exceeds it."""
+
+MOST_SLENDER = 1e4
+"""Length over the largest size of the section, above that of most rods: 200 mm written as 200 beside 5e-3 exceeds it."""
 
 NEAR_ONE = 100.0
 """Largest number, and inverse of the smallest one, of a rod or tube that is written in dimensionless numbers."""
@@ -74,7 +80,7 @@ def read_scene(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> S
     file = Path(path)
     tables = parsed(file_text(file))
     scene = _scene(tables, overrides, file.parent)
-    note_unlikely_units(scene)
+    note_unlikely_units(scene, tables)
     return scene
 
 
@@ -254,10 +260,31 @@ def _component(value: Any, degrees: int) -> Any:
     return [*listed, *[0.0] * (degrees - len(listed))]
 
 
-def note_unlikely_units(scene: Scene) -> None:
-    """Warn of each number that is probably in another unit; a rod with all numbers near one counts as dimensionless."""
-    for note in _notes(scene):
+def note_unlikely_units(scene: Scene, tables: Mapping[str, Any]) -> None:
+    """Warn of each number that is probably in another unit; a rod with all numbers near one counts as dimensionless.
+
+    Args:
+        scene: the scene.
+        tables: its tables as the file writes them, for angles of orientations.
+    """
+    for note in (*_notes(scene), *_notes_on_turns(tables)):
         LOG.warning("%s", note)
+
+
+def _notes_on_turns(table: Mapping[str, Any], where: str = "") -> Iterator[str]:
+    """Notes on angles of orientations, in a table and in the tables in it."""
+    for key, value in table.items():
+        numbers = value if isinstance(value, list) else [value]
+        for i, entry in enumerate(numbers):
+            place = f"{where}{key}[{i}]" if isinstance(value, list) else f"{where}{key}"
+            if isinstance(entry, Mapping):
+                yield from _notes_on_turns(entry, f"{place}.")
+            elif key in TURNS and abs(entry) > FURTHEST:
+                yield _more_than_two_turns(place, entry)
+
+
+def _more_than_two_turns(where: str, angle: float) -> str:
+    return f"{where}: {angle:g} rad is more than two turns (is it in rad?)"
 
 
 def _notes(scene: Scene) -> Iterator[str]:
@@ -276,8 +303,12 @@ def _notes(scene: Scene) -> Iterator[str]:
         density = material.get("density", math.inf)
         if density < LIGHTEST:
             yield f"{where}.material.density: {density:g} kg/m³ is lighter than foam (is it in kg/m³?)"
+        total = sum(lengths.values())
+        widest = max(sizes.values(), default=math.inf)
+        if total > MOST_SLENDER * widest:
+            yield f"{where}: the length of {total:g} m is {total / widest:.0f} times the section's size (are both in m?)"
         # The value of a length that is a parameter is unknown.
-        longest = sum(lengths.values()) or math.inf
+        longest = total or math.inf
         for key, size in sizes.items():
             if size > longest:
                 yield f"{where}.section.{key}: {size:g} m is more than the length of {longest:g} m (are both in m?)"
@@ -285,7 +316,7 @@ def _notes(scene: Scene) -> Iterator[str]:
     for where, turned in (*hinges, *tubes):
         for key, angle in _numbers(turned, ANGLES).items():
             if abs(angle) > FURTHEST:
-                yield f"{where}.{key}: {angle:g} rad is more than two turns (is it in rad?)"
+                yield _more_than_two_turns(f"{where}.{key}", angle)
 
 
 def _numbers(record: Record | None, keys: Collection[str]) -> dict[str, float]:
