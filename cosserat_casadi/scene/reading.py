@@ -54,7 +54,7 @@ FURTHEST = 4 * math.pi
 """Angle, rad, above the angles of most hinges, drives and orientations: 15° written as 15 exceeds it."""
 
 MOST_SLENDER = 1e4
-"""Length over the largest size of the section, above that of most rods: 200 mm written as 200 beside 5e-3 exceeds it."""
+"""Length over the largest size of the section, above that of most rods: 200 mm written as 200 exceeds it."""
 
 NEAR_ONE = 100.0
 """Largest number, and inverse of the smallest one, of a rod or tube that is written in dimensionless numbers."""
@@ -306,7 +306,8 @@ def _notes(scene: Scene) -> Iterator[str]:
         total = sum(lengths.values())
         widest = max(sizes.values(), default=math.inf)
         if total > MOST_SLENDER * widest:
-            yield f"{where}: the length of {total:g} m is {total / widest:.0f} times the section's size (are both in m?)"
+            ratio = f"{total / widest:.0f} times the section's size"
+            yield f"{where}: the length of {total:g} m is {ratio} (are both in m?)"
         # The value of a length that is a parameter is unknown.
         longest = total or math.inf
         for key, size in sizes.items():
