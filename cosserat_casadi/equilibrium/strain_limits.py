@@ -13,6 +13,9 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.strain_margins import APART, VANISHED, StrainMargin, margins_of
 from cosserat_casadi.numerics.outcome import Outcome
 
+STALLED_AT = 2 * VANISHED
+"""Margin up to which a limit explains a stall: a law ends at the margin VANISHED, and the last step short of that."""
+
 JUDGED = (Outcome.CONVERGED, Outcome.LOAD_STALLED)
 """Outcomes that a limit of the strains explains, or invalidates."""
 
@@ -46,7 +49,12 @@ class BeyondLimit(NamedTuple):
 
 
 def first_beyond(
-    model: Model, x: FloatArray, inputs: FloatArray, margins_in_c: ca.Function | None = None
+    model: Model,
+    x: FloatArray,
+    inputs: FloatArray,
+    margins_in_c: ca.Function | None = None,
+    *,
+    at_margin: float = VANISHED,
 ) -> BeyondLimit | None:
     """The first state with strains beyond a limit; None if every state is within all limits.
 
@@ -55,15 +63,16 @@ def first_beyond(
         x: unknowns, shape (k, model.size).
         inputs: stacked inputs, shape (k, model.inputs.size).
         margins_in_c: the model's margins as compiled code, or None.
+        at_margin: margin that counts as zero.
     """
     if model.strain_margins is None or not len(x):
         return None
     margins = evaluated(margins_in_c or model.strain_margins, x, inputs)[0][:, :, 0]
-    beyond = np.flatnonzero(np.min(margins, axis=1) <= VANISHED)
+    beyond = np.flatnonzero(np.min(margins, axis=1) <= at_margin)
     if not len(beyond):
         return None
     state = int(beyond[0])
-    first = int(np.argmax(margins[state] <= VANISHED))
+    first = int(np.argmax(margins[state] <= at_margin))
     return BeyondLimit(state, margins_of(model.discrete)[first])
 
 
@@ -78,7 +87,8 @@ def within_limits(model: Model, x: FloatArray, inputs: FloatArray, outcome: Outc
     """
     if outcome not in JUDGED:
         return outcome, outcome.value
-    beyond = first_beyond(model, x[None, :], inputs[None, :])
+    at_margin = STALLED_AT if outcome is Outcome.LOAD_STALLED else VANISHED
+    beyond = first_beyond(model, x[None, :], inputs[None, :], at_margin=at_margin)
     if beyond is None or beyond.margin.kind == APART:
         # Sections that lie apart are not a limit here: the error estimate says that the error is unknown.
         return outcome, outcome.value
