@@ -69,7 +69,7 @@ def test_path_that_vanishes_is_told(strain: str) -> None:
 
 @pytest.mark.parametrize("moment", [0.037, 0.05, 0.1])
 def test_a_stall_at_the_end_of_a_measured_curve_is_told(moment: float) -> None:
-    """The curve is level at its last point, 0.036 N m, and the load stalls short of it, however far the load is above."""
+    """The curve is level at its last point, 0.036 N m, and the load stalls short of it, however large it is."""
     points = [[0, 0], [2, 0.02], [5, 0.03], [10, 0.034], [20, 0.036]]
     material = {"law": "table", "youngs_modulus": 2e9, "poisson_ratio": 0.4, "table": {"bending_y": points}}
     section = {"shape": "rectangle", "width": 6e-3, "height": 2e-3}
