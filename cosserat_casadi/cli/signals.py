@@ -1,8 +1,7 @@
 """Ctrl-C and SIGTERM: both end a command with a sentence, and with nothing half-written, within a second.
 
-In Python code a signal raises KeyboardInterrupt. Inside a long call of CasADi it does not, and in Python code that
-CasADi calls the exception would be lost, or come out as another error: there the signal is remembered, and the next
-report of progress raises the exception. Failing that, a thread that receives signals too ends the process.
+In Python code a signal raises KeyboardInterrupt. Inside a long call of CasADi it does not, nor in Python code that
+CasADi calls: the next report of progress raises it, or a thread that receives signals too ends the process.
 """
 
 from __future__ import annotations
@@ -18,6 +17,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from traceback import walk_stack
 from types import FrameType, TracebackType
 
 from cosserat_casadi.files import remove_unfinished
@@ -141,8 +141,7 @@ def was_interrupted() -> bool:
 def remembered_interrupt() -> Iterator[Callable[[], None]]:
     """A function that raises KeyboardInterrupt if the user has interrupted since.
 
-    CasADi calls Python to inspect arguments and to convert results. An interrupt at this moment is only remembered; it
-    is raised at the next report of progress.
+    An interrupt while CasADi calls Python, to inspect arguments or to convert results, is raised at the next report.
     """
     handlers_before = {number: signal.signal(number, _interrupt) for number in SIGNALS}
 
@@ -200,14 +199,7 @@ def _report_uncaught(kind: type[BaseException], error: BaseException, at: Traceb
 
 def _interrupt(number: int, frame: FrameType | None) -> None:
     _received.append(number)
-    if not _is_called_by_casadi(frame):
+    # In Python code that CasADi calls from C, with CasADi on the stack twice, the exception would be lost.
+    modules = [at.f_globals.get("__name__") for at, _ in walk_stack(frame)]
+    if modules.count("casadi.casadi") < 2:
         raise KeyboardInterrupt
-
-
-def _is_called_by_casadi(frame: FrameType | None) -> bool:
-    """Whether the C code of CasADi calls this frame, directly or not: its Python code is then on the stack twice."""
-    functions_of_casadi = 0
-    while frame is not None and functions_of_casadi < 2:
-        functions_of_casadi += frame.f_globals.get("__name__") == "casadi.casadi"
-        frame = frame.f_back
-    return functions_of_casadi == 2

@@ -13,9 +13,6 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.strain_margins import APART, VANISHED, StrainMargin, margins_of
 from cosserat_casadi.numerics.outcome import Outcome
 
-STALLED_AT = 2 * VANISHED
-"""Margin up to which a limit explains a stall: a law ends at the margin VANISHED, and the last step short of that."""
-
 JUDGED = (Outcome.CONVERGED, Outcome.LOAD_STALLED)
 """Outcomes that a limit of the strains explains, or invalidates."""
 
@@ -49,12 +46,7 @@ class BeyondLimit(NamedTuple):
 
 
 def first_beyond(
-    model: Model,
-    x: FloatArray,
-    inputs: FloatArray,
-    margins_in_c: ca.Function | None = None,
-    *,
-    at_margin: float = VANISHED,
+    model: Model, x: FloatArray, inputs: FloatArray, margins_in_c: ca.Function | None = None, zero: float = VANISHED
 ) -> BeyondLimit | None:
     """The first state with strains beyond a limit; None if every state is within all limits.
 
@@ -63,16 +55,15 @@ def first_beyond(
         x: unknowns, shape (k, model.size).
         inputs: stacked inputs, shape (k, model.inputs.size).
         margins_in_c: the model's margins as compiled code, or None.
-        at_margin: margin that counts as zero.
+        zero: margin that counts as zero.
     """
     if model.strain_margins is None or not len(x):
         return None
     margins = evaluated(margins_in_c or model.strain_margins, x, inputs)[0][:, :, 0]
-    beyond = np.flatnonzero(np.min(margins, axis=1) <= at_margin)
+    beyond = np.argwhere(margins <= zero)
     if not len(beyond):
         return None
-    state = int(beyond[0])
-    first = int(np.argmax(margins[state] <= at_margin))
+    state, first = beyond[0].tolist()
     return BeyondLimit(state, margins_of(model.discrete)[first])
 
 
@@ -85,10 +76,9 @@ def within_limits(model: Model, x: FloatArray, inputs: FloatArray, outcome: Outc
         inputs: stacked inputs, shape (model.inputs.size,).
         outcome: outcome of the solve without the limits.
     """
-    if outcome not in JUDGED:
-        return outcome, outcome.value
-    at_margin = STALLED_AT if outcome is Outcome.LOAD_STALLED else VANISHED
-    beyond = first_beyond(model, x[None, :], inputs[None, :], at_margin=at_margin)
+    # A load that stalls at the end of a law stops short of it, by a last step.
+    zero = 2 * VANISHED if outcome is Outcome.LOAD_STALLED else VANISHED
+    beyond = first_beyond(model, x[None, :], inputs[None, :], zero=zero) if outcome in JUDGED else None
     if beyond is None or beyond.margin.kind == APART:
         # Sections that lie apart are not a limit here: the error estimate says that the error is unknown.
         return outcome, outcome.value

@@ -47,11 +47,8 @@ LIGHTEST = 10.0
 ANGLES = frozenset({"angle", "rest", "lower_stop", "upper_stop", "rotation"})
 """Keys of angles of hinges and of drives of tubes."""
 
-TURNS = frozenset({"twist", "angles", "rotation_vector"})
-"""Keys of angles of orientations, which the records turn into quaternions."""
-
 FURTHEST = 4 * math.pi
-"""Angle, rad, above the angles of most hinges, drives and orientations: 15° written as 15 exceeds it."""
+"""Angle, rad, above the angles of most hinges and drives: 15° written as 15 exceeds it."""
 
 MOST_SLENDER = 1e4
 """Length over the largest size of the section, above that of most rods: 200 mm written as 200 exceeds it."""
@@ -80,7 +77,8 @@ def read_scene(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> S
     file = Path(path)
     tables = parsed(file_text(file))
     scene = _scene(tables, overrides, file.parent)
-    note_unlikely_units(scene, tables)
+    for note in _notes_on_units(scene):
+        LOG.warning("%s", note)
     return scene
 
 
@@ -260,42 +258,15 @@ def _component(value: Any, degrees: int) -> Any:
     return [*listed, *[0.0] * (degrees - len(listed))]
 
 
-def note_unlikely_units(scene: Scene, tables: Mapping[str, Any]) -> None:
-    """Warn of each number that is probably in another unit; a rod with all numbers near one counts as dimensionless.
-
-    Args:
-        scene: the scene.
-        tables: its tables as the file writes them, for angles of orientations.
-    """
-    for note in (*_notes(scene), *_notes_on_turns(tables)):
-        LOG.warning("%s", note)
-
-
-def _notes_on_turns(table: Mapping[str, Any], where: str = "") -> Iterator[str]:
-    """Notes on angles of orientations, in a table and in the tables in it."""
-    for key, value in table.items():
-        numbers = value if isinstance(value, list) else [value]
-        for i, entry in enumerate(numbers):
-            place = f"{where}{key}[{i}]" if isinstance(value, list) else f"{where}{key}"
-            if isinstance(entry, Mapping):
-                yield from _notes_on_turns(entry, f"{place}.")
-            elif key in TURNS and abs(entry) > FURTHEST:
-                yield _more_than_two_turns(place, entry)
-
-
-def _more_than_two_turns(where: str, angle: float) -> str:
-    return f"{where}: {angle:g} rad is more than two turns (is it in rad?)"
-
-
-def _notes(scene: Scene) -> Iterator[str]:
+def _notes_on_units(scene: Scene) -> Iterator[str]:
+    """Each number that is probably in another unit; a rod with all numbers near one counts as dimensionless."""
     tubes = [(f"tubes[{i}]", tube) for i, tube in enumerate(scene.tubes)]
     elastic: list[tuple[str, Rod | Tube]] = [(f"rods[{i}]", rod) for i, rod in enumerate(scene.rods)]
     for where, record in [*elastic, *tubes]:
         lengths = _numbers(record, {"length", "straight", "curved"})
         sizes = _sizes(record.section)
         material = _numbers(record.material, {"youngs_modulus", "density"})
-        numbers = (lengths | sizes | material).values()
-        if all(1 / NEAR_ONE <= number <= NEAR_ONE for number in numbers):
+        if all(1 / NEAR_ONE <= number <= NEAR_ONE for number in (lengths | sizes | material).values()):
             continue
         modulus = material.get("youngs_modulus", math.inf)
         if modulus < SOFTEST:
@@ -303,21 +274,18 @@ def _notes(scene: Scene) -> Iterator[str]:
         density = material.get("density", math.inf)
         if density < LIGHTEST:
             yield f"{where}.material.density: {density:g} kg/m³ is lighter than foam (is it in kg/m³?)"
-        total = sum(lengths.values())
-        widest = max(sizes.values(), default=math.inf)
-        if total > MOST_SLENDER * widest:
-            ratio = f"{total / widest:.0f} times the section's size"
-            yield f"{where}: the length of {total:g} m is {ratio} (are both in m?)"
         # The value of a length that is a parameter is unknown.
-        longest = total or math.inf
+        longest = sum(lengths.values()) or math.inf
         for key, size in sizes.items():
             if size > longest:
                 yield f"{where}.section.{key}: {size:g} m is more than the length of {longest:g} m (are both in m?)"
+        if lengths and sum(lengths.values()) > MOST_SLENDER * max(sizes.values(), default=math.inf):
+            yield f"{where}: the length of {longest:g} m is over {MOST_SLENDER:g} sizes of the section (are both in m?)"
     hinges = [(f"joints[{i}]", joint) for i, joint in enumerate(scene.joints) if joint.kind == "revolute"]
     for where, turned in (*hinges, *tubes):
         for key, angle in _numbers(turned, ANGLES).items():
             if abs(angle) > FURTHEST:
-                yield _more_than_two_turns(f"{where}.{key}", angle)
+                yield f"{where}.{key}: {angle:g} rad is more than two turns (is it in rad?)"
 
 
 def _numbers(record: Record | None, keys: Collection[str]) -> dict[str, float]:
