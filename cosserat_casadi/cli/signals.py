@@ -1,7 +1,7 @@
 """Ctrl-C and SIGTERM: both end a command with a sentence, and with nothing half-written, within a second.
 
-In Python code a signal raises KeyboardInterrupt. Inside a long call of CasADi it does not, and in a callback from
-CasADi the exception is lost: then a thread that receives signals too ends the process.
+In Python code a signal raises KeyboardInterrupt. Inside a long call of CasADi it does not, nor in Python code that
+CasADi calls: the next report of progress raises it, or a thread that receives signals too ends the process.
 """
 
 from __future__ import annotations
@@ -17,7 +17,8 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from types import TracebackType
+from traceback import walk_stack
+from types import FrameType, TracebackType
 
 from cosserat_casadi.files import remove_unfinished
 
@@ -140,8 +141,7 @@ def was_interrupted() -> bool:
 def remembered_interrupt() -> Iterator[Callable[[], None]]:
     """A function that raises KeyboardInterrupt if the user has interrupted since.
 
-    CasADi calls Python to inspect arguments, and takes any exception there as a wrong type: an interrupt at this moment
-    is lost. It is remembered, and raised again at the next report of progress.
+    An interrupt while CasADi calls Python, to inspect arguments or to convert results, is raised at the next report.
     """
     handlers_before = {number: signal.signal(number, _interrupt) for number in SIGNALS}
 
@@ -197,6 +197,9 @@ def _report_uncaught(kind: type[BaseException], error: BaseException, at: Traceb
         sys.__excepthook__(kind, error, at)
 
 
-def _interrupt(number: int, frame: object) -> None:
+def _interrupt(number: int, frame: FrameType | None) -> None:
     _received.append(number)
-    raise KeyboardInterrupt
+    # In Python code that CasADi calls from C, with CasADi on the stack twice, the exception would be lost.
+    modules = [at.f_globals.get("__name__") for at, _ in walk_stack(frame)]
+    if modules.count("casadi.casadi") < 2:
+        raise KeyboardInterrupt

@@ -46,7 +46,7 @@ class BeyondLimit(NamedTuple):
 
 
 def first_beyond(
-    model: Model, x: FloatArray, inputs: FloatArray, margins_in_c: ca.Function | None = None
+    model: Model, x: FloatArray, inputs: FloatArray, margins_in_c: ca.Function | None = None, zero: float = VANISHED
 ) -> BeyondLimit | None:
     """The first state with strains beyond a limit; None if every state is within all limits.
 
@@ -55,15 +55,15 @@ def first_beyond(
         x: unknowns, shape (k, model.size).
         inputs: stacked inputs, shape (k, model.inputs.size).
         margins_in_c: the model's margins as compiled code, or None.
+        zero: margin that counts as zero.
     """
     if model.strain_margins is None or not len(x):
         return None
     margins = evaluated(margins_in_c or model.strain_margins, x, inputs)[0][:, :, 0]
-    beyond = np.flatnonzero(np.min(margins, axis=1) <= VANISHED)
+    beyond = np.argwhere(margins <= zero)
     if not len(beyond):
         return None
-    state = int(beyond[0])
-    first = int(np.argmax(margins[state] <= VANISHED))
+    state, first = beyond[0].tolist()
     return BeyondLimit(state, margins_of(model.discrete)[first])
 
 
@@ -76,9 +76,9 @@ def within_limits(model: Model, x: FloatArray, inputs: FloatArray, outcome: Outc
         inputs: stacked inputs, shape (model.inputs.size,).
         outcome: outcome of the solve without the limits.
     """
-    if outcome not in JUDGED:
-        return outcome, outcome.value
-    beyond = first_beyond(model, x[None, :], inputs[None, :])
+    # A load that stalls at the end of a law stops short of it, by a last step.
+    zero = 2 * VANISHED if outcome is Outcome.LOAD_STALLED else VANISHED
+    beyond = first_beyond(model, x[None, :], inputs[None, :], zero=zero) if outcome in JUDGED else None
     if beyond is None or beyond.margin.kind == APART:
         # Sections that lie apart are not a limit here: the error estimate says that the error is unknown.
         return outcome, outcome.value

@@ -57,6 +57,9 @@ ANGLES = frozenset({"angle", "rest", "lower_stop", "upper_stop", "rotation"})
 FURTHEST = 4 * math.pi
 """Angle, rad, above the angles of most hinges and drives: 15° written as 15 exceeds it."""
 
+MOST_SLENDER = 1e4
+"""Length over the largest size of the section, above that of most rods: 200 mm written as 200 exceeds it."""
+
 NEAR_ONE = 100.0
 """Largest number, and inverse of the smallest one, of a rod or tube that is written in dimensionless numbers."""
 
@@ -283,6 +286,8 @@ def _unlikely_numbers(scene: Scene) -> Iterator[str]:
         for key, size in sizes.items():
             if size > longest:
                 yield f"{where}.section.{key}: {size:g} m is more than the length of {longest:g} m (are both in m?)"
+        if lengths and sum(lengths.values()) > MOST_SLENDER * max(sizes.values(), default=math.inf):
+            yield f"{where}: the length of {longest:g} m is over {MOST_SLENDER:g} sizes of the section (are both in m?)"
     for i, load in enumerate(scene.loads):
         if isinstance(load, Gravity) and math.hypot(*load.acceleration) > STRONGEST:
             strength = math.hypot(*load.acceleration)

@@ -15,15 +15,18 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager
 from pathlib import Path
 
+import casadi as ca
+import numpy as np
 import pytest
 from typer.main import get_command
 
 from cosserat_casadi.cli.exit_codes import INTERRUPTED, NOT_FOUND, NOT_WRITTEN, REFUSED, TERMINATED
 from cosserat_casadi.cli.main import app
-from cosserat_casadi.cli.signals import remove_temporary_files
+from cosserat_casadi.cli.signals import forget_signals, remembered_interrupt, remove_temporary_files
 from cosserat_casadi.cli.terminal import HANDLER, prepare_streams
 from cosserat_casadi.errors import WriteError
 from cosserat_casadi.files import atomic_file, atomic_folder
+from cosserat_casadi.maths.typing import FloatArray
 from tests.commands import WIRE
 from tests.families import mostly_slow
 
@@ -466,6 +469,29 @@ def test_an_interrupt_that_a_library_swallows_shows_no_traceback(folder: Path) -
     code, _, said = ended(process)
     assert said == ""
     assert code == 0
+
+
+def test_an_interrupt_while_casadi_converts_a_matrix_is_raised_at_the_next_report(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    convert = np.ascontiguousarray
+
+    def interrupted(values: FloatArray) -> FloatArray:
+        signal.raise_signal(signal.SIGINT)
+        return convert(values)
+
+    # CasADi calls this from C; an exception here came out as another error, in code that used the matrix.
+    monkeypatch.setattr(np, "ascontiguousarray", interrupted)
+    try:
+        with remembered_interrupt() as raise_interrupt:
+            matrix = ca.DM([[1.0, 2.0], [3.0, 4.0]]).full()
+            np.testing.assert_array_equal(matrix, [[1.0, 2.0], [3.0, 4.0]])
+            with pytest.raises(KeyboardInterrupt):
+                raise_interrupt()
+            with pytest.raises(KeyboardInterrupt):
+                interrupted(matrix)
+    finally:
+        forget_signals()
 
 
 @pytest.mark.slow

@@ -67,6 +67,20 @@ def test_path_that_vanishes_is_told(strain: str) -> None:
     assert_allclose(solution.load_factor, 100.0 / 150.0, rtol=2e-3, atol=0)
 
 
+@pytest.mark.parametrize("moment", [0.037, 0.05, 0.1])
+def test_a_stall_at_the_end_of_a_measured_curve_is_told(moment: float) -> None:
+    """The curve is level at its last point, 0.036 N m, and the load stalls short of it, however large it is."""
+    points = [[0, 0], [2, 0.02], [5, 0.03], [10, 0.034], [20, 0.036]]
+    material = {"law": "table", "youngs_modulus": 2e9, "poisson_ratio": 0.4, "table": {"bending_y": points}}
+    section = {"shape": "rectangle", "width": 6e-3, "height": 2e-3}
+    lath = {"name": "lath", "length": 0.4, "strain": "planar", "material": material, "section": section}
+    turn = {"name": "turn", "kind": "tip_wrench", "rod": "lath", "moment": [0, moment, 0]}
+    solution = solve(scene_from_dict({"schema": 1, "rods": [lath], "loads": [turn]}))
+    assert solution.outcome is Outcome.BEYOND_MATERIAL
+    assert "'lath'" in solution.message
+    assert_allclose(solution.load_factor, 0.036 / moment, rtol=1e-4, atol=0)
+
+
 @pytest.mark.parametrize("strain", ["planar", "kirchhoff"])
 def test_path_with_length_left_is_no_matter(strain: str) -> None:
     solution = solve(pulled(strain, 99.0))

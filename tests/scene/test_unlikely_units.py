@@ -19,13 +19,15 @@ WIRE = ROOT / "examples" / "nitinol_wire.toml"
         ("wire.material.youngs_modulus=2.1e20", "rods[0].material.youngs_modulus: 2.1e+20 Pa is stiffer than diamond"),
         ("wire.material.density=1e6", "rods[0].material.density: 1e+06 kg/m³ is heavier than any metal"),
         ("weight.acceleration=[0,0,-1e6]", "loads[0].acceleration: 1e+06 m/s² is above any gravity"),
-        ("wire.length=300", ""),
+        ("wire.length=4", ""),
+        ("wire.length=300", "rods[0]: the length of 300 m is over 10000 sizes of the section"),
         ("wire.material.density=6.45", "rods[0].material.density: 6.45 kg/m³ is lighter than foam"),
         ("wire.section.radius=0.5", "rods[0].section.radius: 0.5 m is more than the length of 0.2 m"),
         (
             "wire.section.radius={ base = 5e-4, tip = 0.5 }",
             "rods[0].section.radius: 0.5 m is more than the length of 0.2 m",
         ),
+        ("wire.length=200", "rods[0]: the length of 200 m is over 10000 sizes of the section"),
         ("wire.length=0.3", ""),
     ],
 )
