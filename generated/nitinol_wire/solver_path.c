@@ -27,7 +27,7 @@ static loads loads_at(const load_path *path, real t, workspace *work) {
   return at;
 }
 
-/* Length of a change of the unknowns: strains and poses count whole, forces by a share, or not on a paced path. */
+/* Length of a change of the unknowns: strains and poses count whole, forces by a share, none on a paced path. */
 static real step_length(const real *step, int is_paced) {
   real sum = 0;
   for (int i = 0; i < N; i++) {
@@ -187,9 +187,9 @@ static progress follow_path(const load_path *path, const path_limits *limits, in
     }
     if (now.next->t < 1) {
       if (result.jacobians <= GROW_BELOW) step *= 2;
-      /* Where small corrections turn large forces, Newton's Jacobian is no guide. */
-      const int has_one = result.jacobians > 0 && !path->is_paced;
-      info->jacobians += tangent_at(path, now.next, has_one, now.spare, work);
+      /* Small corrections turn large forces: Newton's Jacobian is no guide. */
+      const int known = result.jacobians > 0 && !path->is_paced;
+      info->jacobians += tangent_at(path, now.next, known, now.spare, work);
     }
     accept_next(&now);
     if (now.point->t == 1) {
@@ -233,8 +233,8 @@ static updated_jacobian *grow_loads(const real *inputs, int is_paced, real *x, w
   return follow_to_the_end(&path, 0, x, work, info);
 }
 
-/* The tension of a rod that a support stretches may keep the steps from the full load: then the shape alone bounds them.
-   Returns Newton's last Jacobian at the solution, or null. */
+/* Tension may keep the steps from the full load: then the shape alone bounds them. Returns Newton's last Jacobian at the
+   solution, or null. */
 static updated_jacobian *solve_from_unloaded(const real *inputs, real *x, workspace *work, solver_info *info) {
   updated_jacobian *jacobian = grow_loads(inputs, 0, x, work, info);
   if (!PACES || info->status != SOLVER_LOAD_STALLED || info->load_factor <= NEARLY_LOADED) return jacobian;
