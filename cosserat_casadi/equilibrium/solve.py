@@ -399,12 +399,10 @@ def _taut(task: _Task) -> _End:
         return _continuation(task)
     path = past_no_obstacle(load_path(task.model, task.inputs), task.model, (task.inputs, task.inputs))
     paced = _paced(task, path)
-    if paced is None:
-        return _continuation(task)
-    if paced.outcome is Outcome.CONVERGED:
+    if paced is not None and paced.outcome is Outcome.CONVERGED:
         return _End(paced.x, paced.outcome, paced.iterations, paced=True)
     end = _continuation(task)
-    return replace(end, iterations=end.iterations + paced.iterations)
+    return end if paced is None else replace(end, iterations=end.iterations + paced.iterations)
 
 
 def _paced(task: _Task, path: Path) -> ContinuationResult | None:

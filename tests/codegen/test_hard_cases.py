@@ -117,7 +117,7 @@ def taut_string() -> Scene:
 
 
 def test_a_taut_string_has_no_singular_jacobian(export_recipe: ExportRecipe) -> None:
-    """Nor has it in lanes: large entries of the columns of its shape leave the pivots of its extension small."""
+    """Large entries of the columns of its shape leave the pivots of its extension small."""
     made = export_recipe("hard_string", Recipe(taut_string(), 10, 24), estimates=False)
     inputs = made.model.pack()
     theirs = made.solve(inputs)

@@ -92,7 +92,6 @@ CANDIDATES = 24
 
 TRACK_ITERATIONS, TRACK_PARTS = 400, 40
 """Default budget of a turn of a control loop: ordinary turns take a few, and 300 where two rods meet."""
-
 SOLVE_ITERATIONS, SOLVE_PARTS = 1200, 400
 """Budget of a solve, and of a move of a slider of a page."""
 
