@@ -154,11 +154,12 @@ class Resolution:
         """Sweeps of the look; 0 if the tips need none."""
         if self.waves or self.preview.model.scene.supports:
             return LOADED_SWEEPS
+        is_negligible = self.extrapolated_error < NEGLIGIBLE * self.allowed
+        if not is_negligible:
+            return SWEEPS
         # A layer presses a part of an element, and products of waves are short: few modes do not show these at all.
         is_hidden = self._product_modes or self.preview.model.discrete.pressed_rods
-        if self.extrapolated_error < NEGLIGIBLE * self.allowed and not is_hidden:
-            return 0
-        return SWEEPS
+        return SWEEPS if is_hidden else 0
 
     @cached_property
     def _product_modes(self) -> int:

@@ -395,12 +395,14 @@ def _continuation(task: _Task) -> _End:
 
 def _taut(task: _Task) -> _End:
     """End of the load path whose steps the shape alone bounds; of a continuation if that does not converge."""
-    if task.start is None:
-        path = past_no_obstacle(load_path(task.model, task.inputs), task.model, (task.inputs, task.inputs))
-        result = _paced(task, path)
-        if result is not None and result.outcome is Outcome.CONVERGED:
-            return _End(result.x, result.outcome, result.iterations, paced=True)
-    return _continuation(task)
+    if task.start is not None:
+        return _continuation(task)
+    path = past_no_obstacle(load_path(task.model, task.inputs), task.model, (task.inputs, task.inputs))
+    paced = _paced(task, path)
+    if paced is not None and paced.outcome is Outcome.CONVERGED:
+        return _End(paced.x, paced.outcome, paced.iterations, paced=True)
+    end = _continuation(task)
+    return end if paced is None else replace(end, iterations=end.iterations + paced.iterations)
 
 
 def _paced(task: _Task, path: Path) -> ContinuationResult | None:

@@ -10,7 +10,7 @@ import numpy as np
 from cosserat_casadi.codegen.contact.arrangements import Chosen, chosen_arrangements
 from cosserat_casadi.codegen.contact.checks import check_contact
 from cosserat_casadi.codegen.contact.kernels import ArrangementKernels
-from cosserat_casadi.codegen.contact.sources import TRACK_ITERATIONS, TRACK_PARTS, contact_files
+from cosserat_casadi.codegen.contact.sources import SOLVE_ITERATIONS, SOLVE_PARTS, contact_files
 from cosserat_casadi.codegen.kernel_files import kernel_sources
 from cosserat_casadi.codegen.memory import largest_room
 from cosserat_casadi.codegen.names import Names, scene_names
@@ -26,10 +26,6 @@ from cosserat_casadi.page.webassembly import NAME
 
 ALONG_LINE = 25
 """Number of drawn points of an interval of contact."""
-
-
-ITERATIONS, PARTS = 20 * TRACK_ITERATIONS, 20 * TRACK_PARTS
-"""Largest numbers of Newton steps and of continuation steps for one move of a slider, as for a solve in C."""
 
 
 def contact_page_files(model: Model, cases: FloatArray) -> dict[str, str]:
@@ -55,8 +51,8 @@ def contact_page_files(model: Model, cases: FloatArray) -> dict[str, str]:
         "MACRO": names.macro,
         "drawn": max(function.size1_out(0) for function in functions),
         "drawn_kernels": ", ".join(function.name() for function in functions),
-        "iterations": ITERATIONS,
-        "parts": PARTS,
+        "iterations": SOLVE_ITERATIONS,
+        "parts": SOLVE_PARTS,
         "stability": stability,
         "arguments": largest_room(generated, "ARG") + 2,
         "results": largest_room(generated, "RES") + 1,

@@ -34,7 +34,7 @@ static const real STEP_WEIGHTS[N] = {
 /* Which unknowns are strains or poses of frames, not multipliers or tensions. */
 static const int IS_SHAPE[N] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
 
-/* Whether supports may stretch the rods, so that a load path which stalls nearly loaded is followed again, paced. */
+/* Whether a load path that stalls nearly loaded is then paced. */
 enum { PACES = 0, PACE = 3 };
 static const real NEARLY_LOADED = (real)0.99;
 

@@ -11,7 +11,7 @@ static const path_limits LONG_PATH = {
 /* Share of the loads at t: t, or 1 - (1 - t)^3 on a paced path. */
 static real load_factor_at(const load_path *path, real t) {
   const real rest = 1 - t;
-  return path->is_paced ? 1 - rest * rest * rest : t;
+  return PACES && path->is_paced ? 1 - rest * rest * rest : t;
 }
 
 /* The loads at t; the inputs lie in the workspace until the next call. */
@@ -27,11 +27,11 @@ static loads loads_at(const load_path *path, real t, workspace *work) {
   return at;
 }
 
-/* Length of a change of the unknowns: strains and poses count whole, forces by a share, or not on a paced path. */
+/* Length of a change of the unknowns: strains and poses count whole, forces by a share, none on a paced path. */
 static real step_length(const real *step, int is_paced) {
   real sum = 0;
   for (int i = 0; i < N; i++) {
-    const real weighted = is_paced && !IS_SHAPE[i] ? 0 : step[i] * STEP_WEIGHTS[i];
+    const real weighted = PACES && is_paced && !IS_SHAPE[i] ? 0 : step[i] * STEP_WEIGHTS[i];
     sum += weighted * weighted;
   }
   return SQUARE_ROOT(sum);
@@ -55,8 +55,7 @@ static int tangent_at(const load_path *path, path_point *point, int has_jacobian
                       workspace *work) {
   const loads at = loads_at(path, point->t, work);
   const real rest = 1 - point->t;
-  const real pace = path->is_paced ? PACE * rest * rest : 1;
-  const real load_factor_rate = path->grows_load ? pace : 0;
+  const real load_factor_rate = path->is_paced ? PACE * rest * rest : path->grows_load ? 1 : 0;
   int jacobians = 0;
   for (int i = 0; i < INPUTS; i++) work->inputs_rate[i] = path->grows_load ? 0 : path->to[i] - path->from[i];
   rate_at(point->x, &at, work->inputs_rate, load_factor_rate, work->rate, work);
@@ -188,9 +187,9 @@ static progress follow_path(const load_path *path, const path_limits *limits, in
     }
     if (now.next->t < 1) {
       if (result.jacobians <= GROW_BELOW) step *= 2;
-      /* Where small corrections turn large forces, Newton's last Jacobian is no guide. */
-      const int has_one = result.jacobians > 0 && !path->is_paced;
-      info->jacobians += tangent_at(path, now.next, has_one, now.spare, work);
+      /* Small corrections turn large forces: Newton's Jacobian is no guide. */
+      const int known = result.jacobians > 0 && !path->is_paced;
+      info->jacobians += tangent_at(path, now.next, known, now.spare, work);
     }
     accept_next(&now);
     if (now.point->t == 1) {
@@ -200,7 +199,7 @@ static progress follow_path(const load_path *path, const path_limits *limits, in
       break;
     }
   }
-  info->load_factor = path->grows_load ? load_factor_at(path, now.point->t) : now.point->t;
+  info->load_factor = load_factor_at(path, now.point->t);
   now.step = step;
   return now;
 }
@@ -219,7 +218,7 @@ static updated_jacobian *follow_to_the_end(const load_path *path, int has_jacobi
   return 0;
 }
 
-/* Follows the load path, paced or not. Returns Newton's last Jacobian at the solution, or null. */
+/* Returns Newton's last Jacobian at the solution, or null. */
 static updated_jacobian *grow_loads(const real *inputs, int is_paced, real *x, workspace *work, solver_info *info) {
   const load_path path = {.grows_load = 1, .is_paced = is_paced, .from = inputs, .to = inputs};
   path_point *first = work->points;
@@ -234,12 +233,12 @@ static updated_jacobian *grow_loads(const real *inputs, int is_paced, real *x, w
   return follow_to_the_end(&path, 0, x, work, info);
 }
 
-/* The tension of a rod that a support stretches may bound the steps so that they do not reach the full load: then the
-   shape alone bounds them. Returns Newton's last Jacobian at the solution, or null. */
+/* Tension may keep the steps from the full load: then the shape alone bounds them. Returns Newton's last Jacobian at the
+   solution, or null. */
 static updated_jacobian *solve_from_unloaded(const real *inputs, real *x, workspace *work, solver_info *info) {
   updated_jacobian *jacobian = grow_loads(inputs, 0, x, work, info);
-  const int stalled = info->status == SOLVER_LOAD_STALLED;
-  return PACES && stalled && info->load_factor > NEARLY_LOADED ? grow_loads(inputs, 1, x, work, info) : jacobian;
+  if (!PACES || info->status != SOLVER_LOAD_STALLED || info->load_factor <= NEARLY_LOADED) return jacobian;
+  return grow_loads(inputs, 1, x, work, info);
 }
 
 /* Begins a path at the equilibrium near x for the inputs `from`: in points[0], with tangent and Jacobian. */

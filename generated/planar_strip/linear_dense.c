@@ -36,8 +36,8 @@ static int pivot_row(const real *column, int k) {
 }
 
 /* Gaussian elimination with partial pivoting, in place, column after column: G. H. Golub, C. F. Van Loan, Matrix
-   Computations, 4th edition, algorithm 3.4.1. The diagonal holds inverse pivots, zero for one at rounding, since symmetry
-   may let a rod turn without energy. Returns whether there was none. */
+   Computations, 4th edition, algorithm 3.4.1. The diagonal holds inverse pivots, zero for one at rounding of its column
+   (tension makes others large), since symmetry may let a rod turn without energy. Returns whether there was none. */
 static int factorise(real *a, int *pivots) {
   const real tiny = SINGULAR * largest_entry(a, N * N);
   int regular = 1;
@@ -45,7 +45,7 @@ static int factorise(real *a, int *pivots) {
     real *column = a + k * N;
     pivots[k] = pivot_row(column, k);
     if (pivots[k] != k) swap_rows(a, k, pivots[k]);
-    if (ABSOLUTE(column[k]) <= tiny) {
+    if (ABSOLUTE(column[k]) <= tiny && ABSOLUTE(column[k]) <= SINGULAR * larger_of(1, largest_entry(column, N))) {
       for (int i = k; i < N; i++) column[i] = 0;
       regular = 0;
       continue;

@@ -109,7 +109,7 @@ typedef struct {
 /* From the unloaded scene under growing loads, or from some inputs to others; t from 0 to 1. */
 typedef struct {
   int grows_load;
-  int is_paced; /* whether the shape alone bounds steps, ever shorter in the load towards its end */
+  int is_paced; /* the shape alone bounds steps */
   const real *from;
   const real *to;
 } load_path;
@@ -130,6 +130,6 @@ typedef struct {
   updated_jacobian *jacobian;
   updated_jacobian *spare;
   int has_jacobian;
-  int is_paced; /* as of its path */
+  int is_paced;
   real step; /* next step; zero if none is long enough */
 } progress;

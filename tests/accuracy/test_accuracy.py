@@ -323,7 +323,8 @@ class _Blind:
         return FinerShift(tips=np.full((2, 3), np.nan), shapes=np.full((2, 3), np.nan))
 
 
-def test_what_cannot_be_foreseen_is_an_infinite_error() -> None:
+def test_what_cannot_be_foreseen_is_an_infinite_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Resolution, "_product_modes", 0)
     resolution = Resolution(_Blind())  # type: ignore[arg-type]
     assert resolution.extrapolated_error == np.inf
     assert resolution.hidden_error == np.inf

@@ -106,6 +106,28 @@ def test_slack_cable_vs_python(export_recipe: ExportRecipe) -> None:
         assert_allclose(ours.x, theirs.x, rtol=1e-8, atol=1e-8)
 
 
+def taut_string() -> Scene:
+    """A string stretched by two millimetres: its tension is 2e5 EI/L², the compliance of its extension 1e-8."""
+    strains = {"bending_y": 8e-5, "extension": 1.4e4}
+    base = {"position": [0, 0, 0], "tangent": [1, 0, 0]}
+    string = rod(list(strains), length=0.65, stiffness=strains, linear_density=0.3, base=base)
+    clamp = {"rod": "rod", "kind": "clamped", "position": [0.652, 0, 0], "tangent": [1, 0, 0]}
+    weight = {"name": "weight", "kind": "gravity", "acceleration": [0, 0, -9.81]}
+    return scene(weight, rods=[string], supports=[clamp])
+
+
+def test_a_taut_string_has_no_singular_jacobian(export_recipe: ExportRecipe) -> None:
+    """Large entries of the columns of its shape leave the pivots of its extension small."""
+    made = export_recipe("hard_string", Recipe(taut_string(), 10, 24), estimates=False)
+    inputs = made.model.pack()
+    theirs = made.solve(inputs)
+    shape = made.model.discrete.unknowns.differential
+    assert theirs.converged
+    for ours in (made.compiled.solve(inputs), *made.compiled.solve_batch([inputs, 2 * inputs])[:1]):
+        assert ours.converged, ours.message
+        assert_allclose(ours.x[shape], theirs.x[shape], rtol=1e-6, atol=1e-8)
+
+
 def test_unresolved_from_every_start(export_recipe: ExportRecipe) -> None:
     """Cold, warm and following other inputs: with too few nodes none is called converged."""
     made = export_recipe("hard_unresolved", CASES["unresolved"][0], estimates=False)

@@ -92,6 +92,8 @@ CANDIDATES = 24
 
 TRACK_ITERATIONS, TRACK_PARTS = 400, 40
 """Default budget of a turn of a control loop: ordinary turns take a few, and 300 where two rods meet."""
+SOLVE_ITERATIONS, SOLVE_PARTS = 1200, 400
+"""Budget of a solve, and of a move of a slider of a page."""
 
 LONGEST_WAY = 0.1
 """Largest displacement of a section in one part of the path of the inputs, over the length of its rod."""
@@ -210,6 +212,8 @@ def _words(chosen: Chosen, names: Names, tables: Tables, generated: dict[str, st
         "kernel_results": largest_room(generated, "RES") + 2,
         "default_iterations": TRACK_ITERATIONS,
         "default_parts": TRACK_PARTS,
+        "solve_iterations": SOLVE_ITERATIONS,
+        "solve_parts": SOLVE_PARTS,
         **_limits(chosen),
         **status_words(names, CONTACT_OUTCOMES, "CONTACT"),
     }

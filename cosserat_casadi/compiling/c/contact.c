@@ -7,8 +7,8 @@ static const contact_options DEFAULT_OPTIONS = {
 };
 
 static const contact_options LONG_WAY = {
-    .max_iterations = 3 * CONTACT_DEFAULT_ITERATIONS,
-    .max_parts = 10 * CONTACT_DEFAULT_PARTS,
+    .max_iterations = CONTACT_SOLVE_ITERATIONS,
+    .max_parts = CONTACT_SOLVE_PARTS,
 };
 
 static contact_info no_result(void) {

@@ -76,6 +76,17 @@ static void swap_rows_of_lane(double *a, int size, int k, int m, int lane) {
   }
 }
 
+/* Least size of the pivot of a column: tension makes other columns large. */
+static lanes least_pivot(int size, double singular, const lanes *column, lanes tiny) {
+  lanes largest = IN_ALL(1);
+  for (int i = 0; i < size; i++) {
+    const lanes entry = absolute(column[i]);
+    largest = chosen(entry > largest, entry, largest);
+  }
+  largest *= singular;
+  return chosen(largest < tiny, largest, tiny);
+}
+
 void factorise_in_lanes(int size, double singular, double *matrices, int *pivots, int *regular, int *finite) {
   lanes *a = (lanes *)matrices;
   lanes tiny = IN_ALL(0);
@@ -100,13 +111,18 @@ void factorise_in_lanes(int size, double singular, double *matrices, int *pivots
       largest = chosen(larger, entry, largest);
       best = chosen(larger, IN_ALL(0) + (double)i, best);
     }
+    int is_doubtful = 0;
     for (int lane = 0; lane < LANES; lane++) {
       const int pivot = (int)best[lane];
       pivots[k * LANES + lane] = pivot;
       if (pivot != k) swap_rows_of_lane(matrices, size, k, pivot, lane);
-      if (largest[lane] <= tiny[lane]) regular[lane] = 0;
+      is_doubtful |= largest[lane] <= tiny[lane];
     }
-    const lane_mask vanishes = largest <= tiny;
+    const lanes least = is_doubtful ? least_pivot(size, singular, column, tiny) : tiny;
+    for (int lane = 0; lane < LANES; lane++) {
+      if (largest[lane] <= least[lane]) regular[lane] = 0;
+    }
+    const lane_mask vanishes = largest <= least;
     column[k] = chosen(vanishes, IN_ALL(0), 1 / column[k]);
     for (int i = k + 1; i < size; i++) column[i] *= column[k];
     for (int j = k + 1; j < size; j++) {

@@ -86,6 +86,16 @@ static int pivot_row(const real *column, int k, int count) {
   return best;
 }
 
+/* Whether a pivot is at rounding of its column: tension makes other columns large. */
+static int vanishes(const real *column, int k, int order, real tiny) {
+  real largest = 1;
+  if (ABSOLUTE(column[k]) > tiny) return 0;
+  for (int i = 0; i < order; i++) {
+    if (ABSOLUTE(column[i]) > largest) largest = ABSOLUTE(column[i]);
+  }
+  return ABSOLUTE(column[k]) <= SINGULAR * largest;
+}
+
 /* Gaussian elimination of the first columns, in place and left-looking, with partial pivoting among as many rows: G. H.
    Golub, C. F. Van Loan, Matrix Computations, 4th edition, section 3.4. The diagonal holds inverse pivots, zero for one
    at rounding. Returns whether there was none. */
@@ -102,9 +112,9 @@ static int eliminate(real *a, int order, int count, real tiny, int *pivots) {
       a[j * order + k] = a[j * order + best];
       a[j * order + best] = kept;
     }
-    const int vanishes = ABSOLUTE(column[k]) <= tiny;
-    const real inverse = vanishes ? 0 : 1 / column[k];
-    if (vanishes) regular = 0;
+    const int is_neutral = vanishes(column, k, order, tiny);
+    const real inverse = is_neutral ? 0 : 1 / column[k];
+    if (is_neutral) regular = 0;
     column[k] = inverse;
     for (int i = k + 1; i < order; i++) column[i] *= inverse;
   }
