@@ -57,8 +57,10 @@ ANGLES = frozenset({"angle", "rest", "lower_stop", "upper_stop", "rotation"})
 FURTHEST = 4 * math.pi
 """Angle, rad, above the angles of most hinges and drives: 15° written as 15 exceeds it."""
 
-MOST_SLENDER = 1e4
-"""Length over the largest size of the section, above that of most rods: 200 mm written as 200 exceeds it."""
+MOST_SLENDER = 1e5
+"""Length over the largest size of the section, above that of lines between pylons: 200 mm written as 200 exceeds it
+
+beside a radius of half a millimetre."""
 
 NEAR_ONE = 100.0
 """Largest number, and inverse of the smallest one, of a rod or tube that is written in dimensionless numbers."""

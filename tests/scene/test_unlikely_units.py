@@ -26,7 +26,7 @@ WIRE = ROOT / "examples" / "nitinol_wire.toml"
             "wire.section.radius={ base = 5e-4, tip = 0.5 }",
             "rods[0].section.radius: 0.5 m is more than the length of 0.2 m",
         ),
-        ("wire.length=200", "rods[0]: the length of 200 m is over 10000 sizes of the section"),
+        ("wire.length=200", "rods[0]: the length of 200 m is over 100000 sizes of the section"),
         ("wire.length=0.3", ""),
     ],
 )
