@@ -34,7 +34,8 @@ static const real STEP_WEIGHTS[N] = {
 static const int IS_SHAPE[N] = {1, 1, 1, 1, 1, 1, 1};
 
 /* Whether supports may stretch the rods, so that a load path which stalls nearly loaded is followed again, paced. */
-enum { PACES = 0, PACE = 3 };
+enum { PACES = 0 };
+static const real PACE = 3;
 static const real NEARLY_LOADED = (real)0.99;
 
 static void (*const POSE_DERIVATIVES[POSES])(const real *, const real *, real *, real *) = {
@@ -115,8 +116,8 @@ static const int PAIR_OF_MISSING[MISSING] = {1, 0, 0, 3, 2, 2, 5, 4, 4};
 
 static const int TURNED_OF_UNKNOWN[] = {0, 0, 0, 0, 0, 0, 0};
 static const real TURNED_BY_UNKNOWN[] = {
-  (real)0.8671099695241197, (real)0.5006261743217586, (real)0.38778336716474043, (real)0.8671099695241197,
-  (real)0.5006261743217586, (real)0.38778336716474043, (real)1.0};
+  (real)0.86710996952412, (real)0.5006261743217587, (real)0.3877833671647405, (real)0.86710996952412,
+  (real)0.5006261743217587, (real)0.3877833671647405, (real)1.0};
 static const real TURNED_UNLOADED[] = {(real)0.0};
 static const int TURNED_OF_MISSING[] = {0, 0, 0, 0, 0, 0, 0, 0, 0};
 static const int TURNED_MODES[] = {6, 6, 6, 6, 6, 6, 4, 4, 4};

@@ -153,6 +153,7 @@ static progress begin_path(int has_jacobian, workspace *work) {
       .jacobian = work->updated_jacobians,
       .spare = work->updated_jacobians + 1,
       .has_jacobian = has_jacobian,
+      .is_paced = 0,
       .step = 0,
   };
   return now;

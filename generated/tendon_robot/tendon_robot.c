@@ -35,7 +35,8 @@ static const real STEP_WEIGHTS[N] = {
 static const int IS_SHAPE[N] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
 
 /* Whether supports may stretch the rods, so that a load path which stalls nearly loaded is followed again, paced. */
-enum { PACES = 0, PACE = 3 };
+enum { PACES = 0 };
+static const real PACE = 3;
 static const real NEARLY_LOADED = (real)0.99;
 
 static void (*const POSE_DERIVATIVES[POSES])(const real *, const real *, real *, real *) = {
