@@ -393,7 +393,7 @@ def _ends(piece: Piece, start: float, size: float) -> Iterator[tuple[float, floa
 def _inputs(piece: Piece, time: float, size: float) -> list[FloatArray]:
     """Inputs, rates and accelerations at the begin of a step, and constant jerks: the cubics through both ends.
 
-    Where inputs did not end as those of the next step begin, what they move would begin inside what it touches.
+    If inputs ended a step elsewhere than the next step begins, a driven rod would begin inside a rod that it touches.
     """
     begin, end = piece.at(time), piece.at(time + size)
     missed = end.value - begin.value - size / 2.0 * (begin.rate + end.rate)
