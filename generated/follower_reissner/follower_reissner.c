@@ -117,8 +117,8 @@ static const int PAIR_OF_MISSING[MISSING] = {1, 0, 0, 3, 2, 2, 5, 4, 4, 7, 6, 6,
 
 static const int TURNED_OF_UNKNOWN[] = {0, 0, 0, 0, 0, 0, 0, 0, 0, -1, -1, -1, -1};
 static const real TURNED_BY_UNKNOWN[] = {
-  (real)0.8192319205190405, (real)0.4729837698404021, (real)0.36637165272365585, (real)0.3096405611113162,
-  (real)0.8192319205190405, (real)0.4729837698404021, (real)0.36637165272365585, (real)0.3096405611113162,
+  (real)0.8192319205190404, (real)0.472983769840402, (real)0.3663716527236558, (real)0.30964056111131616,
+  (real)0.8192319205190404, (real)0.472983769840402, (real)0.3663716527236558, (real)0.30964056111131616,
   (real)0.9999999999999999, (real)0.0, (real)0.0, (real)0.0, (real)0.0};
 static const real TURNED_UNLOADED[] = {(real)0.0};
 static const int TURNED_OF_MISSING[] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};

@@ -116,8 +116,8 @@ static const int PAIR_OF_MISSING[MISSING] = {1, 0, 0, 3, 2, 2, 5, 4, 4};
 
 static const int TURNED_OF_UNKNOWN[] = {0, 0, 0, 0, 0, 0, 0};
 static const real TURNED_BY_UNKNOWN[] = {
-  (real)0.86710996952412, (real)0.5006261743217587, (real)0.3877833671647405, (real)0.86710996952412,
-  (real)0.5006261743217587, (real)0.3877833671647405, (real)1.0};
+  (real)0.8671099695241197, (real)0.5006261743217586, (real)0.38778336716474043, (real)0.8671099695241197,
+  (real)0.5006261743217586, (real)0.38778336716474043, (real)1.0};
 static const real TURNED_UNLOADED[] = {(real)0.0};
 static const int TURNED_OF_MISSING[] = {0, 0, 0, 0, 0, 0, 0, 0, 0};
 static const int TURNED_MODES[] = {6, 6, 6, 6, 6, 6, 4, 4, 4};
