@@ -335,7 +335,7 @@ class _Search:
             return None
         most = self.ladder[-1]
         if is_struck(self.last.history):
-            far = self.foreseen(most, ORDER_OF_WAVES) > self.tolerance
+            far = self.foreseen(most, UNKNOWN_ORDER) > self.tolerance
             return UNDAMPED.format(**self.told, most=most) if far else None
         # Of sudden loads two distances tell the power. It grows no more, as it does where modes begin to see a pulse.
         order = max(self.order, ORDER_OF_WAVES)

@@ -285,7 +285,7 @@ class RubbingSteps:
 
         Args:
             at: instant at which the step begins.
-            inputs: inputs and their rates at the begin, and their accelerations in the step, shape (k,) each.
+            inputs: inputs, rates and accelerations at the begin, and jerks in the step, shape (k,) each.
             size: duration of the step, s.
 
         Returns:
@@ -339,7 +339,7 @@ def _library(unknowns: int, inputs: int, most_points: int, most_looks: int) -> t
     pointers = (POINTER,) * 4
     library.rubbing_begin.argtypes = [POINTER, POINTER, ctypes.c_int, POINTER]
     library.rubbing_carry.argtypes = [POINTER, POINTER, POINTER, ctypes.c_int]
-    library.rubbing_step.argtypes = [*pointers, DOUBLE, *pointers]
+    library.rubbing_step.argtypes = [POINTER, *pointers, DOUBLE, *pointers]
     found = (ctypes.c_longlong * 12)()
     library.rubbing_sizes(found)
     records = (RubbingModelRecord, FacingRecord, PointsRecord, KernelRecord)

@@ -391,9 +391,14 @@ def _ends(piece: Piece, start: float, size: float) -> Iterator[tuple[float, floa
 
 
 def _inputs(piece: Piece, time: float, size: float) -> list[FloatArray]:
-    """Inputs and rates at the begin of a step, and constant accelerations that lead to the rates at its end."""
+    """Inputs, rates and accelerations at the begin of a step, and constant jerks: the cubics through both ends.
+
+    If inputs ended a step elsewhere than the next step begins, a driven rod would begin inside a rod that it touches.
+    """
     begin, end = piece.at(time), piece.at(time + size)
-    return [begin.value, begin.rate, (end.rate - begin.rate) / size]
+    missed = end.value - begin.value - size / 2.0 * (begin.rate + end.rate)
+    jerks = np.where(np.abs(missed) > ROUNDED * np.abs(end.value), -12.0 * missed / size**3, 0.0)
+    return [begin.value, begin.rate, (end.rate - begin.rate) / size - size / 2.0 * jerks, jerks]
 
 
 def _is_same(old: RubbingTouch, own: RubbingTouch) -> bool:

@@ -89,7 +89,7 @@ solver_status solver_solve(const real *inputs, real *x, solver_workspace *work, 
 solver_status solver_follow(const real *from, const real *inputs, real *x, solver_workspace *work, solver_info *info) {
   solver_info found = no_result();
   updated_jacobian *jacobian = 0;
-  const load_path path = {.grows_load = 0, .from = from, .to = inputs};
+  const load_path path = {.grows_load = 0, .is_paced = 0, .from = from, .to = inputs};
   if (all_finite(from, INPUTS) && all_finite(inputs, INPUTS) && all_finite(x, N)) {
     const newton_result start = start_path(&path, &DAMPED_NEWTON, x, work);
     count_work(&found, &start);

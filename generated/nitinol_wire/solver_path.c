@@ -55,7 +55,7 @@ static int tangent_at(const load_path *path, path_point *point, int has_jacobian
                       workspace *work) {
   const loads at = loads_at(path, point->t, work);
   const real rest = 1 - point->t;
-  const real load_factor_rate = path->is_paced ? PACE * rest * rest : path->grows_load ? 1 : 0;
+  const real load_factor_rate = path->is_paced ? (real)PACE * rest * rest : path->grows_load ? 1 : 0;
   int jacobians = 0;
   for (int i = 0; i < INPUTS; i++) work->inputs_rate[i] = path->grows_load ? 0 : path->to[i] - path->from[i];
   rate_at(point->x, &at, work->inputs_rate, load_factor_rate, work->rate, work);
@@ -152,6 +152,7 @@ static progress begin_path(int has_jacobian, workspace *work) {
       .jacobian = work->updated_jacobians,
       .spare = work->updated_jacobians + 1,
       .has_jacobian = has_jacobian,
+      .is_paced = 0,
       .step = 0,
   };
   return now;
@@ -165,7 +166,7 @@ static progress follow_path(const load_path *path, const path_limits *limits, in
   progress now = begin_path(has_jacobian, work);
   now.is_paced = path->is_paced;
   real step = path->grows_load ? FIRST_STEP : 1;
-  if (path->is_paced) step /= PACE;
+  if (path->is_paced) step /= (real)PACE;
   if (limits->first_step > 0) step = limits->first_step;
   for (int k = 0; k < limits->max_steps && info->iterations < limits->max_iterations; k++) {
     step = admissible_step(&now, step);
@@ -229,7 +230,7 @@ static updated_jacobian *grow_loads(const real *inputs, int is_paced, real *x, w
     info->status = SOLVER_NOT_FINITE;
     return 0;
   }
-  for (int i = 0; is_paced && i < N; i++) first->tangent[i] *= PACE;
+  for (int i = 0; is_paced && i < N; i++) first->tangent[i] *= (real)PACE;
   return follow_to_the_end(&path, 0, x, work, info);
 }
 

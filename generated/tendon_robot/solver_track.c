@@ -12,7 +12,7 @@ enum { RENEW_ABOVE = 3 };
    and restores x if the budget of the turn ends before. */
 static int follow_last_turn(const solver_memory *memory, const solver_options *options, const real *inputs, real *x,
                             workspace *work, solver_info *info) {
-  const load_path path = {.grows_load = 0, .from = memory->inputs, .to = inputs};
+  const load_path path = {.grows_load = 0, .is_paced = 0, .from = memory->inputs, .to = inputs};
   const path_limits limits = {
       .max_steps = options->max_continuation_steps,
       .max_iterations = options->max_iterations,

@@ -411,6 +411,27 @@ def test_a_step_ends_where_the_place_comes_to_the_end_of_the_second_rod() -> Non
 
 
 @pytest.mark.slow
+def test_a_rod_that_accelerates_below_another_one_lets_it_go_as_without_friction() -> None:
+    """Inputs of a step end as those of the next one begin; else the rods are inside each other as one lifts off."""
+    upper = rod("upper", {"position": [-0.15, 0, 0.015], "tangent": [1, 0, 0]}) | {"strain": "planar"}
+    lower = rod("lower", {"position": [0, 0, 0], "tangent": [0, 1, 0]})
+    duration = 0.02
+    drive = {"input": "lower.base.position", "times": [0.0, duration], "values": [[0, 0, 0], [0.006, 0, 0]]}
+    weight = {"kind": "gravity", "acceleration": [0, 0, -G], "name": "weight"}
+    damped = [one | {"damping": {"retardation_time": 2e-3}} for one in (upper, lower)]
+    tables = scene(damped, duration, loads=[weight], motions=[drive | {"interpolation": "cubic"}])
+    tables["accuracy"] = {"modes": 1}
+    from_event_to_event = moved(tables)
+    tables["simulation"] |= {"step": 1e-3}
+    in_steps = moved(with_friction(tables, 1e-9))
+    for motion in (from_event_to_event, in_steps):
+        assert motion.events[-1].kind == "lift_off"
+    for name in LENGTHS:
+        paths = [motion.tip(name).position for motion in (from_event_to_event, in_steps)]
+        assert_allclose(paths[1], paths[0], rtol=0, atol=2e-6)
+    assert np.abs(in_steps.energy.imbalance).max() < 3e-4
+
+
 def test_smooth_friction_tends_to_exact_friction() -> None:
     """On one discrete model, as the width falls, and the speed below which smooth contact creeps with it."""
     exact = moving(held_rods(1e-3))

@@ -246,7 +246,9 @@ static void look_lowest(const facing *own, real near, section_gap *gap, workspac
     }
     const real change = gap->bend > 0 ? clipped(-gap->slope / gap->bend, -SAME_PLACE, SAME_PLACE) : is_falling ? DOWN : -DOWN;
     real next = clipped(place + change, 0, 1);
-    if (next <= falls || next >= rises) next = falls < 0 || rises > 1 ? next : (falls + rises) / 2;
+    /* Rounding alone takes a short step of Newton's method past a section that was looked at. */
+    const int is_past = ABSOLUTE(next - place) > PLACED && (next <= falls || next >= rises);
+    if (is_past && falls >= 0 && rises <= 1) next = (falls + rises) / 2;
     const real moved = ABSOLUTE(next - place);
     if (moved == 0) return;
     place = next;

@@ -772,6 +772,9 @@ static solver_motion_status part_in_contact(const step_start *whole, int number,
     inputs_after(whole, done, work->stretch_inputs, work->stretch_rates);
     start.inputs = work->stretch_inputs;
     start.inputs_rate = work->stretch_rates;
+#ifdef STRETCHES_ARE_TOLD
+    start.since = done;
+#endif
     if (cut > 0) guess_stages(0, 1, &work->end, unknowns);
     if (!begin_stretch(&start, work->end.x, work->end.v, work)) return SOLVER_MOTION_NOT_SOLVED;
 #ifdef CONTACT_RUBS

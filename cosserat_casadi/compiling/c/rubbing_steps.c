@@ -54,6 +54,8 @@ typedef struct {
 
 static model *AT; /* the model of the present step */
 
+static const real *INPUTS_JERK; /* change of the accelerations of inputs in the present step, units/s^3 */
+
 #define FACINGS AT->facing_count
 #define FACING AT->facings
 #define IS_SHAPE AT->is_shape
@@ -386,9 +388,10 @@ void rubbing_begin(solver_step_memory *memory, const real *accelerations, int co
 
 /* Takes one step of the given size, s, as solver_step does, and writes its stretches into the model's rows. counts takes
    the numbers of iterations and Jacobians. */
-int rubbing_step(model *of, const real *inputs, const real *rates, const real *accelerations, real size,
+int rubbing_step(model *of, const real *inputs, const real *rates, const real *accelerations, const real *jerks, real size,
                  solver_state *state, solver_step_memory *memory, workspace *work, int *counts) {
   AT = of;
+  INPUTS_JERK = jerks;
   for (int i = 0; i < (int)(sizeof NUMBERS / sizeof *NUMBERS); i++) NUMBERS[i] = i;
   for (int k = 0; k < STAGE_ENTRIES; k++) {
     ENTRY_ROWS[k] = k % N;

@@ -39,7 +39,7 @@ SOLVER_DEVICE solver_status solver_recover(const real *inputs, real *x, solver_m
   solver_info found = no_result();
   if (!all_finite(inputs, INPUTS) || !all_finite(x, N)) return refuse(SOLVER_NOT_FINITE, inputs, x, work, &found, info);
   if (!memory->has_inputs) return refuse(SOLVER_NOT_IN_EQUILIBRIUM, inputs, x, work, &found, info);
-  const load_path path = {.grows_load = 0, .from = memory->inputs, .to = inputs};
+  const load_path path = {.grows_load = 0, .is_paced = 0, .from = memory->inputs, .to = inputs};
   const path_limits limits = {
       .max_steps = chosen.max_continuation_steps,
       .max_iterations = chosen.max_iterations,

@@ -39,6 +39,9 @@ typedef struct {
   const real *inputs_rate;         /* may be null */
   const real *inputs_acceleration; /* may be null */
   real size;                       /* s */
+#ifdef STRETCHES_ARE_TOLD
+  real since; /* time since inputs had this acceleration, s */
+#endif
 } step_start;
 
 /* The inputs and their rates at a time after the start of the step, s. */
@@ -48,6 +51,11 @@ static void inputs_after(const step_start *start, real time, real *inputs, real 
     const real acceleration = start->inputs_acceleration ? start->inputs_acceleration[i] : 0;
     inputs[i] = start->inputs[i] + time * (rate + time / 2 * acceleration);
     rates[i] = rate + time * acceleration;
+#ifdef STRETCHES_ARE_TOLD
+    const real jerk = INPUTS_JERK[i];
+    inputs[i] += time * time / 2 * jerk * (start->since + time / 3);
+    rates[i] += time * jerk * (start->since + time / 2);
+#endif
   }
 }
 
@@ -56,6 +64,9 @@ static void inputs_of(const step_start *start, real share, instant *at) {
   inputs_after(start, share * start->size, at->inputs, at->inputs + INPUTS);
   for (int i = 0; i < INPUTS; i++) {
     at->inputs[2 * INPUTS + i] = start->inputs_acceleration ? start->inputs_acceleration[i] : 0;
+#ifdef STRETCHES_ARE_TOLD
+    at->inputs[2 * INPUTS + i] += (start->since + share * start->size) * INPUTS_JERK[i];
+#endif
   }
 }
 
@@ -358,7 +369,12 @@ SOLVER_DEVICE solver_motion_status solver_step(const real *inputs, const real *i
                                  solver_step_memory *memory, const solver_step_options *options, workspace *work,
                                  solver_step_info *info) {
   const solver_step_options chosen = chosen_options(options);
-  const step_start whole = {state->x, state->v, inputs, inputs_rate, chosen.inputs_acceleration, dt};
+  const step_start whole = {.x = state->x,
+                            .v = state->v,
+                            .inputs = inputs,
+                            .inputs_rate = inputs_rate,
+                            .inputs_acceleration = chosen.inputs_acceleration,
+                            .size = dt};
   solver_step_info found = no_step();
   found.status = take_step(&whole, state, memory, &chosen, work, &found);
   if (info) *info = found;
