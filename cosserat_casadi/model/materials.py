@@ -46,10 +46,12 @@ class LawOfRod:
     Attributes:
         rod: the record of the rod, whose numbers may be expressions of parameters.
         hooke: abscissae (k,) ↦ diagonal of the Hooke tensor (k, 6).
+        fibres: points across half of a section at which a law is summed; 0 for the fewest of the law.
     """
 
     rod: scenes.Rod
     hooke: Field
+    fibres: int = 0
 
     @property
     def admitted(self) -> tuple[int, ...]:
@@ -285,7 +287,8 @@ class RubberLaw(Law[RecordType], ABC):
         assert section is not None
         shape = SHAPES[section.shape]
         keys = list(sizes_of(section))
-        if shape.fibres(dict.fromkeys(keys, ca.SX(1.0))) is None:
+        count = of_rod.fibres or material.fibres
+        if shape.fibres(dict.fromkeys(keys, ca.SX(1.0)), count) is None:
             problem = f"law = {self.kind!r} sums over fibres, and a section of shape {section.shape!r} has none"
             raise SceneError(Problem(f"{of_rod.rod.name}.section", problem, "give its class a method fibres"))
         coefficients = self.coefficients(material)
@@ -296,7 +299,7 @@ class RubberLaw(Law[RecordType], ABC):
             sizes = dict(zip(keys, ca.vertsplit(data[len(numbers) :]), strict=True))
             strains = []
             areas = []
-            for x, y, area in shape.fibres(sizes):
+            for x, y, area in shape.fibres(sizes, count):
                 levers = dict(zip(FIBRE_STRAINS, (y, -x, 1.0), strict=True))
                 strains.append(_sum([levers[component] * change[component] for component in stretched]))
                 areas.append(area)
