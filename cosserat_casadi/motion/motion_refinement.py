@@ -846,8 +846,8 @@ def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation] 
     if search.last.is_blind:
         return uniform, 0.0
     moved_by = felt(history, search.simulation.duration)
-    # Sections find contact, and more modes have more of them.
-    if not search.scene.has_contact:
+    # Sections find contact, and more modes have more of them; and a finer level shows errors of laws that are summed.
+    if not (search.scene.has_contact or any(own.fibres for own in uniform.values())):
         left = lacking(history, search.simulation.duration)
         if max(left, search.last.fronts) <= SPACE_SHARE * search.tolerance:
             return None, left
