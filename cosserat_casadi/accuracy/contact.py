@@ -52,7 +52,12 @@ def solve_contact_scene(solver: SceneSolver, transport: str) -> Solution:
         # Fixed modes are the only level.
         unmet = 0.0 if scene.accuracy.fixed else _unmet(start)
         fine = solve_contact(
-            scene, Grids(with_more_fibres(chosen, number)), solver.values, start=start, progress=solver.progress, unmet_before=unmet
+            scene,
+            Grids(with_more_fibres(chosen, number)),
+            solver.values,
+            start=start,
+            progress=solver.progress,
+            unmet_before=unmet,
         )
         failures += not fine.converged
         if failures > MOST_FAILURES:

@@ -745,9 +745,7 @@ def discrete_scene(
         for own in [discretisation[rod.name]]
     }
     every = [
-        replace(
-            rod_properties(rod, fibres=discretisation[rod.name].fibres), fixed_masses=fixed_masses(scene, rod.name)
-        )
+        replace(rod_properties(rod, fibres=discretisation[rod.name].fibres), fixed_masses=fixed_masses(scene, rod.name))
         for rod in scene.rods
     ]
     softest = min(properties.bending_stiffness / properties.length for properties in every)

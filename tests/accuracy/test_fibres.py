@@ -1,4 +1,4 @@
-"""Sums of rubber laws over fibres: their error is told, and the tolerance is kept, against SciPy's adaptive quadrature."""
+"""Sums of rubber laws over fibres against adaptive quadrature: their error is told, and the tolerance is kept."""
 
 from __future__ import annotations
 
@@ -8,14 +8,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
 from scipy.integrate import quad
 from scipy.optimize import root
 
 from cosserat_casadi import Scene, SceneError, build, discretise, follow, scene_from_dict, simulate, solve
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.discretise import with_discretisation
-from tests.codegen.libraries import Exported, Recipe
 from tests.families import mostly_slow
 from tests.reference.material_scenes import fibre_stress
 
@@ -116,10 +114,8 @@ def error_of(position: FloatArray, law: str, shape: str, moment: float) -> float
 CASES = [(law, shape) for law in LAWS for shape in SECTIONS]
 
 
-@pytest.mark.parametrize(
-    ("law", "shape"), mostly_slow(CASES, quick=[("yeoh", "circle"), ("mooney_rivlin", "rectangle")])
-)
-@pytest.mark.parametrize("tolerance", [1e-6, 1e-9])
+@pytest.mark.parametrize(("law", "shape"), mostly_slow(CASES, quick=[("yeoh", "circle"), ("neo_hookean", "rectangle")]))
+@pytest.mark.parametrize("tolerance", [pytest.param(1e-6, marks=pytest.mark.slow), 1e-9])
 def test_solution_keeps_its_tolerance(law: str, shape: str, tolerance: float) -> None:
     solution = solve(scene(law, shape, MOMENT, tolerance=tolerance))
     assert solution.error_estimate is not None
@@ -152,22 +148,32 @@ def test_error_on_fixed_modes_is_told_and_falls_with_the_fibres() -> None:
     assert errors[2] < 1e-2 * errors[1] < 1e-4 * errors[0]
 
 
-def test_path_keeps_its_tolerance() -> None:
-    path = follow(scene("yeoh", "circle", MOMENT, tolerance=1e-8), "push.moment", [MOMENT, 0.0, 0.0])
+@pytest.mark.parametrize(
+    ("law", "moment"), mostly_slow([("neo_hookean", 0.008), ("yeoh", MOMENT)], quick=[("neo_hookean", 0.008)])
+)
+def test_path_keeps_its_tolerance(law: str, moment: float) -> None:
+    path = follow(scene(law, "circle", moment, tolerance=1e-8), "push.moment", [moment, 0.0, 0.0])
     assert path.error_estimate is not None
     tip = path.solution(-1).tip().position
-    assert error_of(tip, "yeoh", "circle", MOMENT) <= path.error_estimate <= 1e-8
+    assert error_of(tip, law, "circle", moment) <= path.error_estimate <= 1e-8
 
 
-@pytest.mark.parametrize("accuracy", [{"modes": 1, "nodes": 16}, {}])
+@pytest.mark.parametrize("accuracy", [{"modes": 1, "nodes": 16, "fibres": 2}, {}])
 def test_motion_tells_the_error_of_its_fibres(accuracy: dict[str, Any]) -> None:
-    """A heavily damped rod is bent to a circle within ten times its relaxation."""
+    """A damped rod is bent to a circle, and rests there after twenty times its relaxation."""
+    moment = 0.012
     tables = scene_tables("yeoh", "circle", 0.0, **accuracy, tolerance=1e-3)
     tables["rods"][0]["damping"] = {"retardation_time": 0.02}
-    tables["simulation"] = {"duration": 0.4}
-    tables["motions"] = [{"input": "push.moment", "times": [0.0, 0.2], "values": [[0, 0, 0], [0.012, 0, 0]]}]
+    tables["simulation"] = {"duration": 0.6}
+    tables["motions"] = [{"input": "push.moment", "times": [0.0, 0.2], "values": [[0, 0, 0], [moment, 0, 0]]}]
     motion = simulate(scene_from_dict(tables))
     assert motion.error_estimate is not None
+    error = error_of(motion.tip().position[-1], "yeoh", "circle", moment)
+    assert error <= motion.error_estimate
+    if accuracy:
+        assert error > 1e-5
+    else:
+        assert motion.error_estimate <= 1e-3
 
 
 def test_scene_keeps_its_fibres() -> None:
@@ -183,15 +189,3 @@ def test_scene_keeps_its_fibres() -> None:
 def test_fibres_without_nodes_or_out_of_range_are_refused(accuracy: dict[str, Any]) -> None:
     with pytest.raises(SceneError, match="fibres"):
         scene("neo_hookean", "circle", MOMENT, **accuracy)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("law", LAWS)
-def test_error_in_c_is_told(export_recipe: Callable[..., Exported], law: str) -> None:
-    made = export_recipe(f"fibres_{law}", Recipe(scene(law, "circle", 0.002, tolerance=1e-6), 1, 20, "magnus8"))
-    for moment in (0.002, 0.008, MOMENT):
-        inputs = np.array([moment, 0.0, 0.0])
-        in_c, in_python = made.compiled.solve(inputs), made.solve(inputs)
-        assert in_c.error_estimate is not None and in_python.error_estimate is not None
-        assert error_of(in_python.tip().position, law, "circle", moment) <= in_c.error_estimate
-        assert_allclose(in_c.error_estimate, in_python.error_estimate, rtol=0.05, atol=1e-11)

@@ -455,12 +455,11 @@ def test_no_value_anywhere_leads_to_anything_but_a_scene_or_a_plain_refusal(spot
 
 
 def test_refused_text_names_its_file(tmp_path):
-    for text, problem in (("schema = " + "[" * 100_000, "nested too deeply"), ("a = " + "[" * 300, "nested too deeply")):
-        file = tmp_path / "deep.toml"
-        file.write_text(text, encoding="utf-8")
-        with pytest.raises(SceneError, match=problem) as refusal:
-            read_scene(file)
-        assert refusal.value.problems[0].where == str(file)
+    file = tmp_path / "deep.toml"
+    file.write_text("schema = " + "[" * 100_000, encoding="utf-8")
+    with pytest.raises(SceneError, match="nested too deeply") as refusal:
+        read_scene(file)
+    assert refusal.value.problems[0].where == str(file)
 
 
 def test_deep_tables_from_python_are_refused():
