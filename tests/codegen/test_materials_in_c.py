@@ -72,7 +72,7 @@ def test_error_of_the_sum_over_fibres_is_told(export_recipe: ExportRecipe, law: 
     made = export_recipe(f"fibres_{law}", Recipe(scene, 1, 20, "magnus8"))
     for moment in (0.002, 0.008, fibres.MOMENT):
         inputs = np.array([moment, 0.0, 0.0])
-        in_c, in_python = made.compiled.solve(inputs), made.solve(inputs)
+        in_c, in_python = made.compiled.solve(inputs), solve(made.model, inputs)
         assert in_c.error_estimate is not None and in_python.error_estimate is not None
         assert fibres.error_of(in_python.tip().position, law, "circle", moment) <= in_c.error_estimate
         assert_allclose(in_c.error_estimate, in_python.error_estimate, rtol=0.05, atol=1e-11)
