@@ -347,7 +347,7 @@ class _FibreSum:
 
 
 _fibre_sum = lru_cache(_FibreSum)
-"""The same object for equal sums, so that one kernel serves many models."""
+"""One object for all equal sums, so that one kernel serves many models."""
 
 
 @final
