@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -69,11 +69,11 @@ class SceneError(CosseratError):
         problems: every fault found, in the order of the file.
     """
 
-    def __init__(self, *problems: Problem) -> None:
+    def __init__(self, *problems: Problem, page: str = "scene") -> None:
         self.problems = problems
         # A fault of an option or an argument does not concern the scene.
         if not all(problem.where.startswith("--") or problem.where in ARGUMENTS for problem in problems):
-            self.page = "scene"
+            self.page = page
         super().__init__("\n".join(str(problem) for problem in problems))
 
 
@@ -106,7 +106,7 @@ def collect_problems(problems: list[Problem]) -> Iterator[None]:
         problems.extend(error.problems)
 
 
-def refuse(problems: Iterable[Problem], kind: type[SceneError | ExportError] = SceneError) -> None:
+def refuse(problems: Iterable[Problem], kind: Callable[..., SceneError | ExportError] = SceneError) -> None:
     """Raise an error with all problems, if there are any."""
     found = tuple(problems)
     if found:

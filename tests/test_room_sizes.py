@@ -12,7 +12,7 @@ from tests.conftest import ROOT
 PACKAGE = ROOT / "cosserat_casadi"
 
 LINES = {
-    "accuracy": 3_650,
+    "accuracy": 3_699,
     "actuators": 458,
     "beside rooms": 625,
     "cli": 4_410,
@@ -23,11 +23,11 @@ LINES = {
     "environments": 330,
     "equilibrium": 8_290,
     "estimation": 1_730,
-    "identification": 4_643,
+    "identification": 4_646,
     "loads": 2_365,
     "maths": 2_643,
     "mjcf": 1_050,
-    "model": 11_945,
+    "model": 11_989,
     "motion": 15_835,
     "numerics": 5_400,
     "obstacles": 413,
@@ -35,8 +35,8 @@ LINES = {
     "paths": 3_745,
     "plots": 3_920,
     "results": 2_075,
-    "rod": 6_125,
-    "scene": 9_775,
+    "rod": 6_128,
+    "scene": 9_794,
     "sweeps": 3_708,
     "tubes": 3_250,
     "view": 1_095,

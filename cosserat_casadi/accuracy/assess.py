@@ -7,6 +7,7 @@ The verdicts, in the order of the tests; ``refine`` has a step for each:
 ``NoEquilibrium``     the solve failed otherwise
 ``NeedsModes``        the last coefficients cannot show a wave, or extrapolate to too much error
 ``NeedsFinerSums``    the sections at which layers are summed leave too much error
+``NeedsFibres``       the fibres at which laws are summed leave too much error
 ``NeedsFinerGrid``    the intervals leave too much error
 ``NeedsModes``        an estimate with the missing modes finds too much error
 ``Enough``            the errors of modes and grid are small shares of the tolerance
@@ -39,7 +40,7 @@ REFERENCE_SHARE = 0.15
 """Share of the tolerance for the error of a reference solution by its modes; its grid has a third of that."""
 
 SUM_SHARE = 0.25
-"""Share of the tolerance for the error of sums of layers: answers on fewer modes have equal sums."""
+"""Share of the tolerance for the error of sums of layers, and of fibres: answers on fewer modes have equal sums."""
 
 FASTEST_SUMS = 3.0
 """Largest factor on the sections at which layers are summed: their error falls with the fourth power, about."""
@@ -100,6 +101,11 @@ class NeedsFinerSums:
 
 
 @dataclass(frozen=True)
+class NeedsFibres:
+    """Laws are summed over too few fibres."""
+
+
+@dataclass(frozen=True)
 class NeedsFinerGrid:
     """The grid leaves too large an error, though it resolves the rod."""
 
@@ -109,7 +115,7 @@ class NoEquilibrium:
     """There is no solution to judge."""
 
 
-Verdict = Enough | NeedsModes | NeedsNodes | NeedsFinerSums | NeedsFinerGrid | NoEquilibrium
+Verdict = Enough | NeedsModes | NeedsNodes | NeedsFinerSums | NeedsFibres | NeedsFinerGrid | NoEquilibrium
 
 
 def assess(solution: Solution, tolerance: float, waves: bool = False) -> Verdict:
@@ -138,6 +144,8 @@ def assess(solution: Solution, tolerance: float, waves: bool = False) -> Verdict
     if resolution.sum_error > sum_bound:
         growth = NODES_MARGIN * (resolution.sum_error / sum_bound) ** 0.25
         return NeedsFinerSums(min(growth, FASTEST_SUMS))
+    if resolution.fibre_error > sum_bound:
+        return NeedsFibres()
     # Estimates that need the equations on another grid come last, and the one with more modes after the cheaper one
     # with a finer grid alone: on a grid that is too coarse both show its error.
     grid_bound = max(REFERENCE_SHARE / 3 * tolerance, FLOOR)

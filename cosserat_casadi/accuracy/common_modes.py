@@ -45,6 +45,7 @@ from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.parameters import parameter_layout
 from cosserat_casadi.numerics.progress import CountProgress
 from cosserat_casadi.rod.discretisation import Discretisation
+from cosserat_casadi.scene.accuracy import MOST_FIBRES
 
 MODES_SHARE = 0.6
 """Share of the tolerance for the error by modes that are still missing."""
@@ -441,6 +442,7 @@ class _Lack:
         if growth > MOST_GROWTH and own.transport in NEXT_ORDER:
             return replace(own, nodes=own.nodes + 1, transport=NEXT_ORDER[own.transport])
         growth = min(growth, MOST_GROWTH)
-        # The error of sums of layers is part of the change by the grid.
+        # The error of sums of layers and of fibres is part of the change by the grid.
         sections = ceil(own.sections * growth)
-        return replace(own, nodes=max(ceil(own.nodes * growth), own.nodes + 1), sections=sections)
+        finer = replace(own, nodes=max(ceil(own.nodes * growth), own.nodes + 1), sections=sections)
+        return finer if own.fibres >= MOST_FIBRES else finer.with_more_fibres()

@@ -19,7 +19,7 @@ from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact, sta
 from cosserat_casadi.equilibrium.contact.contact_state import state_in
 from cosserat_casadi.equilibrium.metrics import largest_turn
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise, nodes_for
+from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise, nodes_for, with_more_fibres
 from cosserat_casadi.model.required_modes import most_wave_modes
 
 FINER_MODES = 3
@@ -40,7 +40,7 @@ def solve_contact_scene(solver: SceneSolver, transport: str) -> Solution:
     tolerance = scene.accuracy.tolerance
     coarse: Solution | None = None
     failures = 0
-    for modes, nodes in _levels(scene):
+    for number, (modes, nodes) in enumerate(_levels(scene)):
         # The answer keeps the intervals that a scene fixes.
         turn = 0.0 if scene.accuracy.fixed else solver.unloaded_turn
         if coarse is not None:
@@ -52,7 +52,12 @@ def solve_contact_scene(solver: SceneSolver, transport: str) -> Solution:
         # Fixed modes are the only level.
         unmet = 0.0 if scene.accuracy.fixed else _unmet(start)
         fine = solve_contact(
-            scene, Grids(chosen), solver.values, start=start, progress=solver.progress, unmet_before=unmet
+            scene,
+            Grids(with_more_fibres(chosen, number)),
+            solver.values,
+            start=start,
+            progress=solver.progress,
+            unmet_before=unmet,
         )
         failures += not fine.converged
         if failures > MOST_FAILURES:

@@ -35,8 +35,8 @@ def union_of(chosen: Sequence[Discretisation]) -> Discretisation:
     nodes = max(d.nodes for d in chosen)
     # Names of the Magnus methods sort by their order.
     transport = max(d.transport for d in chosen)
-    sections = max(d.sections for d in chosen)
-    return Discretisation(modes, nodes, transport=transport, sections=sections)
+    sections, fibres = max(d.sections for d in chosen), max(d.fibres for d in chosen)
+    return Discretisation(modes, nodes, transport=transport, sections=sections, fibres=fibres)
 
 
 def unfixed(scene: scenes.Scene, tolerance: float) -> scenes.Scene:
@@ -48,6 +48,7 @@ def unfixed(scene: scenes.Scene, tolerance: float) -> scenes.Scene:
         nodes=None,
         rotation=None,
         sections=None,
+        fibres=None,
         of_rods=None,
         chosen_for=None,
     )
@@ -66,6 +67,7 @@ def fixed_alike(scene: scenes.Scene, chosen: Discretisation) -> scenes.Scene:
         nodes=chosen.nodes,
         rotation=chosen.transport,
         sections=chosen.sections or None,
+        fibres=chosen.fibres or None,
         of_rods=None,
     )
 

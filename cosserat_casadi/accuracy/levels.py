@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import ceil
 
@@ -15,8 +15,9 @@ from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.model.element_ends import NARROWEST, element_ends
 from cosserat_casadi.model.required_modes import most_wave_modes, unloaded_turn
 from cosserat_casadi.model.scene_rods import rod_properties
+from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.properties import RodProperties
-from cosserat_casadi.scene.accuracy import MOST_SECTIONS
+from cosserat_casadi.scene.accuracy import MOST_FIBRES, MOST_SECTIONS
 
 REFERENCE_MODES = (3, 5, 7, 9, 12, 15, 19, 24, 30, 38, 48, 64, 80, 100, 128)
 """Modes per strain component and element of a reference solution, level by level."""
@@ -143,7 +144,13 @@ def verified_model(scene: scenes.Scene, modes: int, turn: float) -> Model:
     nodes = verified_nodes(scene, modes, turn)
     # Levels should differ by their modes alone: the highest order keeps the grid's error out of the comparison.
     discretisation = discretise(scene, modes, nodes, "magnus8")
-    return build(scene, discretisation)
+    return build(scene, with_fibres(discretisation, modes))
+
+
+def with_fibres(chosen: Mapping[str, Discretisation], modes: int) -> dict[str, Discretisation]:
+    """The discretisation of a level that the next level verifies, with laws summed more finely than on lower levels."""
+    fibres = min(modes // 3 + 1, MOST_FIBRES)
+    return {name: own.with_more_fibres(fibres - own.fibres) for name, own in chosen.items()}
 
 
 @dataclass(frozen=True)
@@ -156,6 +163,7 @@ class Level:
         min_nodes: intervals below which a grid was too coarse for the bent rod.
         layer_nodes: intervals that thin smooth obstacles ask for, before the factor.
         sections: sections per element at which layers are summed; 0 for as many as the intervals ask for.
+        more_fibres: points across half of a section beyond the fewest of a law that is summed.
         finest: index of the last level that is tried in any case; higher levels are tried if the rods converge.
     """
 
@@ -164,6 +172,7 @@ class Level:
     min_nodes: int = 0
     layer_nodes: int = 0
     sections: int = 0
+    more_fibres: int = 0
     finest: int = REFERENCE_MODES.index(USUAL_MODES)
 
     @classmethod
@@ -235,6 +244,10 @@ class Level:
         if self.sections == MOST_SECTIONS:
             return None
         return replace(self, sections=min(ceil(factor * self.sections), MOST_SECTIONS))
+
+    def with_more_fibres(self) -> Level | None:
+        """This level with laws summed at one point more across half of a section; None if their sums are given up."""
+        return None if self.more_fibres == MOST_FIBRES else replace(self, more_fibres=self.more_fibres + 1)
 
     def with_finer_grid(self) -> Level | None:
         """This level on more intervals; None if the grid is given up."""

@@ -25,6 +25,7 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import DiscreteScene, Richer, discrete_scene
+from cosserat_casadi.model.discretise import with_more_fibres
 from cosserat_casadi.model.scene_equations import SceneEquations
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.model.watched import SAMPLES, WatchedNumbers, section_poses, watched, watched_cables
@@ -145,6 +146,14 @@ class Preview:
         x = self.reference.x
         finer = self._system(replace(discrete, given_sections=discrete.finer_sections), x)
         return self._shift_by_unknowns(x, np.ones(len(x), dtype=bool), finer)
+
+    def fibres_shift(self) -> FloatArray:
+        """Change of the watched numbers by laws that are summed at more fibres, which show the error of their sums."""
+        chosen = self.model.discretisation
+        if not any(own.fibres for own in chosen.values()):
+            return self.no_shift
+        x = self.reference.x
+        return self._shift_by_unknowns(x, np.ones(len(x), dtype=bool), self._regridded(x, with_more_fibres(chosen)))
 
     def _shift_by_unknowns(self, x: FloatArray, kept: Mask, system: System) -> FloatArray:
         """Change of the watched numbers by one Newton step from x with the equations of another system.

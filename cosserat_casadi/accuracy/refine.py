@@ -25,6 +25,7 @@ import numpy.typing as npt
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.assess import (
     Enough,
+    NeedsFibres,
     NeedsFinerGrid,
     NeedsFinerSums,
     NeedsModes,
@@ -55,7 +56,7 @@ from cosserat_casadi.equilibrium.solve import NONE_STABLE, Start, check_potentia
 from cosserat_casadi.equilibrium.solve import solve as solve_model
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
-from cosserat_casadi.model.discretise import discretise, summed_at
+from cosserat_casadi.model.discretise import discretise, summed_at, with_more_fibres
 from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.model.required_modes import modes_for_turn
 from cosserat_casadi.model.system_functions import SystemFunctions
@@ -344,6 +345,8 @@ def _next_level(level: Level, verdict: Verdict) -> Level | None:
             return level.with_seeing_modes(modes)
         case NeedsFinerSums(factor):
             return level.with_finer_sums(factor)
+        case NeedsFibres():
+            return level.with_more_fibres()
         case NeedsFinerGrid():
             return level.with_finer_grid()
         case Enough():
@@ -357,7 +360,8 @@ def _at_level(solver: SceneSolver, level: Level, coarser: Solution | None) -> So
         turn = max(turn, largest_turn(coarser))
     nodes = level.nodes(turn)
     uniform = discretise(solver.scene, level.modes, nodes, solver.reference_transport)
-    return solver.solve(summed_at(uniform, level.sections), coarser)
+    chosen = with_more_fibres(summed_at(uniform, level.sections), level.more_fibres)
+    return solver.solve(chosen, coarser)
 
 
 def _coarsened(solver: SceneSolver, resolution: Resolution) -> Solution:
@@ -418,7 +422,7 @@ def _beside_finer(
         # The fixed integrator may have an error: the reference takes the integrator for the tolerance.
         finer[name] = replace(fixed, modes=finer_modes, nodes=finer_nodes, transport=solver.reference_transport)
     finer_sums = [max(sections.counts) for sections in solution.model.discrete.finer_sections.values()]
-    finer = summed_at(finer, max(finer_sums, default=0))
+    finer = with_more_fibres(summed_at(finer, max(finer_sums, default=0)))
     reference = solver.solve(finer, meant or solution)
     if not reference.converged:
         return solution.unresolved()

@@ -129,15 +129,25 @@ class Resolution:
         return SUM_SAFETY * change_size(self.preview.sums_shift())
 
     @cached_property
+    def fibre_error(self) -> float:
+        """Error by sums of laws over the fibres of sections."""
+        return SUM_SAFETY * change_size(self.preview.fibres_shift())
+
+    @cached_property
     def tip_error(self) -> float:
         """Error of the watched poses and cables."""
-        return self.modes_error + self.grid_error + self.sum_error
+        return self.modes_error + self._error_but_modes
+
+    @cached_property
+    def _error_but_modes(self) -> float:
+        """Error by the intervals and by sums."""
+        return self.grid_error + self.sum_error + self.fibre_error
 
     @cached_property
     def shape_error(self) -> float:
         """Error of all sections, sections between nodes included; no smaller than the error of the tips."""
         between = HIDDEN_SAFETY * (1 + self._beyond) * change_size(self._look.shapes)
-        return max(self.modes_error, between) + self.grid_error + self.sum_error
+        return max(self.modes_error, between) + self._error_but_modes
 
     def missing_modes(self, error: float, bound: float) -> int:
         """Further modes per component after which an error of the modes should be below a bound."""

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -99,6 +100,10 @@ class _Row:
     held_out: bool
 
 
+refused_data = partial(SceneError, page="identify")
+"""Refusal of the data of measurements."""
+
+
 def read_cases(scene: scenes.Scene, layout: InputLayout, data: Data | None = None) -> list[Case]:
     """Read the cases of a scene's measurements.
 
@@ -119,7 +124,7 @@ def read_cases(scene: scenes.Scene, layout: InputLayout, data: Data | None = Non
             reader = _Reader(number, measurement, tables[number], layout, duration)
             rows += reader.rows()
             problems += shortened(reader.problems, tables[number].source)
-    refuse(problems)
+    refuse(problems, refused_data)
     return _joined(rows, layout, per_row)
 
 
@@ -328,7 +333,7 @@ def _joined(rows: Sequence[_Row], layout: InputLayout, per_row: bool) -> list[Ca
     measured = [row for row in rows if row.datum is not None]
     keys = [_key(row, by_place[row.place], layout, per_row) for row in measured]
     by_case = _settled(measured, keys, names, problems)
-    refuse(shortened(problems, "measurements"))
+    refuse(shortened(problems, "measurements"), refused_data)
     cases: dict[Hashable, Case] = {}
     for row, key in zip(measured, keys, strict=True):
         case = cases.setdefault(key, Case(row.where, layout.pack(), row.moves))
@@ -437,7 +442,7 @@ def read_table(path: Path) -> DataFile:
     problems = [Problem(str(path), f"has the column {column!r} twice") for column in repeated(header)]
     for line, row in rows:
         problems += length_faults(f"{path}, line {line}", header, row)
-    refuse(problems)
+    refuse(problems, refused_data)
     columns = {name: [row[k] for _, row in rows] for k, name in enumerate(header)}
     return DataFile(str(path), columns, tuple(line for line, _ in rows))
 

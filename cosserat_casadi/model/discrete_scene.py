@@ -34,7 +34,7 @@ from cosserat_casadi.model.contact_layers import (
     share_of_more_modes,
 )
 from cosserat_casadi.model.contact_pairs import ContactPair, contact_pairs, history_size
-from cosserat_casadi.model.discretise import enriched, nodes_above_modes
+from cosserat_casadi.model.discretise import enriched, fewest_fibres, nodes_above_modes
 from cosserat_casadi.model.element_ends import moved_ends
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName, UnloadedScene
 from cosserat_casadi.model.homotopy import Compliance
@@ -739,7 +739,15 @@ def discrete_scene(
 ) -> DiscreteScene:
     """The discrete scene of a scene at rest or, with ``moving``, in motion."""
     rods = {}
-    every = [replace(rod_properties(rod), fixed_masses=fixed_masses(scene, rod.name)) for rod in scene.rods]
+    discretisation = {
+        rod.name: replace(own, fibres=own.fibres or fewest_fibres(rod))
+        for rod in scene.rods
+        for own in [discretisation[rod.name]]
+    }
+    every = [
+        replace(rod_properties(rod, fibres=discretisation[rod.name].fibres), fixed_masses=fixed_masses(scene, rod.name))
+        for rod in scene.rods
+    ]
     softest = min(properties.bending_stiffness / properties.length for properties in every)
     for properties in every:
         largest = UNEVEN * softest * properties.length
@@ -762,7 +770,7 @@ def with_numbers(
     rods = {}
     for rod in scene.rods:
         scaling = nominal.rods[rod.name]
-        own = rod_properties(rod, scaling.properties)
+        own = rod_properties(rod, scaling.properties, scaling.discretisation.fibres)
         properties = replace(own, fixed_masses=fixed_masses(scene, rod.name))
         ends = moved_ends(nominal.scene, scene, rod.name, scaling.discretisation.breaks)
         rods[rod.name] = DiscreteRod(properties, scaling.discretisation, ends)

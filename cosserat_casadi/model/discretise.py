@@ -74,13 +74,24 @@ def discretise(
         breaks = element_ends(scene, rod.name)
         check_places(rod.name, breaks)
         integrator = transport or fixed.rotation or DEFAULT_TRANSPORT
-        chosen[rod.name] = Discretisation(modes_of_rod, intervals, breaks, integrator, fixed.sections or 0)
+        fibres = fewest_fibres(rod) and (fixed.fibres or fewest_fibres(rod))
+        chosen[rod.name] = Discretisation(modes_of_rod, intervals, breaks, integrator, fixed.sections or 0, fibres)
     return chosen
+
+
+def fewest_fibres(rod: scenes.Rod) -> int:
+    """Least points across half of a section at which the law of a rod is summed; 0 for a law that is not."""
+    return 0 if rod.material is None else rod.material.fibres
 
 
 def summed_at(chosen: Mapping[str, Discretisation], sections: int) -> dict[str, Discretisation]:
     """The discretisation of every rod, with at least this number of summed sections of layers in each element."""
     return {name: replace(own, sections=max(own.sections, sections)) for name, own in chosen.items()}
+
+
+def with_more_fibres(chosen: Mapping[str, Discretisation], count: int = 1) -> dict[str, Discretisation]:
+    """The discretisation of every rod, with further points for laws that are summed."""
+    return {name: own.with_more_fibres(count) for name, own in chosen.items()}
 
 
 def with_discretisation(scene: scenes.Scene, chosen: Mapping[str, Discretisation]) -> scenes.Scene:
@@ -111,7 +122,7 @@ def with_discretisation(scene: scenes.Scene, chosen: Mapping[str, Discretisation
 def _described(chosen: Discretisation) -> dict[str, Any]:
     """Keys of the scene format for a discretisation, with one number of modes if all strains have the same."""
     modes = chosen.modes[0] if len(set(chosen.modes)) == 1 else chosen.modes
-    summed = {"sections": chosen.sections} if chosen.sections else {}
+    summed = {key: count for key in ("sections", "fibres") if (count := getattr(chosen, key))}
     return {"modes": modes, "nodes": chosen.nodes, "rotation": chosen.transport, **summed}
 
 
@@ -148,4 +159,4 @@ def enriched(
         transport = NEXT_ORDER[transport]
     else:
         nodes = max(nodes, ceil(growth))
-    return replace(discretisation, modes=modes, nodes=nodes, transport=transport)
+    return replace(discretisation.with_more_fibres(), modes=modes, nodes=nodes, transport=transport)

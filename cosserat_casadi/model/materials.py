@@ -9,7 +9,8 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Generic, TypeVar, final
+from functools import lru_cache
+from typing import Any, ClassVar, Generic, TypeVar, final
 
 import casadi as ca
 import numpy as np
@@ -46,10 +47,12 @@ class LawOfRod:
     Attributes:
         rod: the record of the rod, whose numbers may be expressions of parameters.
         hooke: abscissae (k,) ↦ diagonal of the Hooke tensor (k, 6).
+        fibres: points across half of a section at which a law is summed; 0 for the fewest of the law.
     """
 
     rod: scenes.Rod
     hooke: Field
+    fibres: int = 0
 
     @property
     def admitted(self) -> tuple[int, ...]:
@@ -285,40 +288,66 @@ class RubberLaw(Law[RecordType], ABC):
         assert section is not None
         shape = SHAPES[section.shape]
         keys = list(sizes_of(section))
-        if shape.fibres(dict.fromkeys(keys, ca.SX(1.0))) is None:
+        count = of_rod.fibres or material.fibres
+        if shape.fibres(dict.fromkeys(keys, ca.SX(1.0)), 1) is None:
             problem = f"law = {self.kind!r} sums over fibres, and a section of shape {section.shape!r} has none"
             raise SceneError(Problem(f"{of_rod.rod.name}.section", problem, "give its class a method fibres"))
         coefficients = self.coefficients(material)
         numbers = [material.youngs_modulus, *coefficients]
         data = of_rod.columns(numbers, [of_rod.size_of(key) for key in keys])
+        summed = _fibre_sum(self, section.shape, tuple(keys), len(numbers), tuple(stretched), count)
+        return EnergyBeyondHooke(summed.density, data, summed.margin)
 
-        def fibres(change: Matrix, data: Matrix) -> tuple[list[Matrix], list[Matrix]]:
-            sizes = dict(zip(keys, ca.vertsplit(data[len(numbers) :]), strict=True))
-            strains = []
-            areas = []
-            for x, y, area in shape.fibres(sizes):
-                levers = dict(zip(FIBRE_STRAINS, (y, -x, 1.0), strict=True))
-                strains.append(_sum([levers[component] * change[component] for component in stretched]))
-                areas.append(area)
-            return strains, areas
 
-        def density(change: Matrix, data: Matrix) -> Matrix:
-            modulus = data[0]
-            law = data[1 : len(numbers)]
-            # Young's modulus scales the law, and the coefficients give its shape.
-            scale = modulus / law[-1]
-            energies = []
-            for strain, area in zip(*fibres(change, data), strict=True):
-                beyond = scale * self.energy(1 + strain, law) - modulus / 2 * strain**2
-                energies.append(area * beyond)
-            return _sum(energies)
+@dataclass(frozen=True)
+class _FibreSum:
+    """Energy of a section of rubber, summed over its fibres.
 
-        def margin(change: Matrix, data: Matrix) -> Matrix:
-            strains, _ = fibres(change, data)
-            least: Matrix = ca.mmin(ca.vertcat(*strains))
-            return 1 + least
+    Attributes:
+        law: the law of a fibre.
+        shape: shape of the section.
+        keys: keys of its sizes, which are the last data.
+        numbers: number of the data before these: Young's modulus and the coefficients of the law.
+        stretched: indices of the admitted strains that stretch fibres.
+        count: points across half of the section.
+    """
 
-        return EnergyBeyondHooke(density, data, margin)
+    law: RubberLaw[Any]
+    shape: str
+    keys: tuple[str, ...]
+    numbers: int
+    stretched: tuple[int, ...]
+    count: int
+
+    def density(self, change: Matrix, data: Matrix) -> Matrix:
+        """Energy beyond the Hooke tensor's per length of the rod, 1×1, J/m."""
+        modulus = data[0]
+        coefficients = data[1 : self.numbers]
+        # Young's modulus scales the law, and the coefficients give its shape.
+        scale = modulus / coefficients[-1]
+        energies = []
+        for strain, area in self._fibres(change, data):
+            beyond = scale * self.law.energy(1 + strain, coefficients) - modulus / 2 * strain**2
+            energies.append(area * beyond)
+        return _sum(energies)
+
+    def margin(self, change: Matrix, data: Matrix) -> Matrix:
+        """Least stretch of a fibre, 1×1."""
+        least: Matrix = ca.mmin(ca.vertcat(*[strain for strain, _ in self._fibres(change, data)]))
+        return 1 + least
+
+    def _fibres(self, change: Matrix, data: Matrix) -> list[tuple[Matrix, Matrix]]:
+        """Strain and area of each fibre, m²."""
+        sizes = dict(zip(self.keys, ca.vertsplit(data[self.numbers :]), strict=True))
+        fibres = []
+        for x, y, area in SHAPES[self.shape].fibres(sizes, self.count):
+            levers = dict(zip(FIBRE_STRAINS, (y, -x, 1.0), strict=True))
+            fibres.append((_sum([levers[component] * change[component] for component in self.stretched]), area))
+        return fibres
+
+
+_fibre_sum = lru_cache(_FibreSum)
+"""One object for all equal sums, so that one kernel serves many models."""
 
 
 @final

@@ -52,7 +52,9 @@ class Count:
             return f"{self.number:,}"
         # Round up to two digits and zeros.
         unit = 10 ** max(len(str(abs(self.number))) - 2, 0)
-        return f"at most {-(-self.number // unit) * unit:,}"
+        bound = -(-self.number // unit) * unit
+        # A difference of bounds is no bound: an effect may leave fewer sections to sum at.
+        return f"about {bound:,}" if bound < 0 else f"at most {bound:,}"
 
     def __sub__(self, other: Count) -> Count:
         return Count(self.number - other.number, self.exact and other.exact)

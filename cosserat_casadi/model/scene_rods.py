@@ -36,12 +36,13 @@ LARGEST_FORCE = 1e150
 """Largest EI/ℓ² that is computed with, N."""
 
 
-def rod_properties(rod: scenes.Rod, nominal: RodProperties | None = None) -> RodProperties:
+def rod_properties(rod: scenes.Rod, nominal: RodProperties | None = None, fibres: int = 0) -> RodProperties:
     """Stiffness, damping, inertia and unloaded strain of a rod of the scene.
 
     Args:
         rod: the rod, whose numbers may be expressions of parameters.
         nominal: the rod with the scene's own numbers, which scales the equations; None if it is ``rod``.
+        fibres: points across half of a section at which its law is summed; 0 for the fewest of the law.
 
     Raises:
         SceneError: the rod is so long or short, so stiff or soft, that its equations cannot be computed with.
@@ -56,7 +57,7 @@ def rod_properties(rod: scenes.Rod, nominal: RodProperties | None = None) -> Rod
         admitted=rod.admitted,
         basis=rod.basis,
         hooke=hooke,
-        beyond_hooke=_beyond_hooke(rod, hooke),
+        beyond_hooke=_beyond_hooke(rod, hooke, fibres),
         intrinsic=tuple(map(_coefficients, (*rod.intrinsic.curvature, *rod.intrinsic.tangent))),
         linear_density=_linear_density(rod),
         rotary_inertia=_rotary_inertia(rod),
@@ -165,7 +166,7 @@ def _hooke(rod: scenes.Rod) -> Field:
     return _of_sections(rod.section, lambda shape: hooke_tensor(shape, youngs_modulus, shear, correction))
 
 
-def _beyond_hooke(rod: scenes.Rod, hooke: Field) -> EnergyBeyondHooke | None:
+def _beyond_hooke(rod: scenes.Rod, hooke: Field, fibres: int) -> EnergyBeyondHooke | None:
     """Elastic energy beyond the energy of the Hooke tensor; None for a linear rod.
 
     Raises:
@@ -175,7 +176,7 @@ def _beyond_hooke(rod: scenes.Rod, hooke: Field) -> EnergyBeyondHooke | None:
         return coupled_stiffness(rod.stiffness_matrix, LawOfRod(rod, hooke))
     if rod.material is None or rod.section is None:
         return None
-    of_rod = LawOfRod(rod, hooke)
+    of_rod = LawOfRod(rod, hooke, fibres)
     energy: EnergyBeyondHooke | None = LAWS[rod.material.law].beyond_hooke(rod.material, of_rod)
     return energy
 

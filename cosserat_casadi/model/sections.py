@@ -30,15 +30,6 @@ Sizes = Mapping[str, Numbers]
 Fibre = tuple[Matrix, Matrix, Matrix]
 """Position x, y of a fibre in the section, m, and its area, m²."""
 
-RADIAL_POINTS = 3
-"""Points along the radius of a round section: exact up to its eleventh power."""
-
-DIRECTIONS = 12
-"""Number of directions with points in a round section: exact for products of powers of x and y up to a sum of 11."""
-
-POINTS_ACROSS = 6
-"""Points across each side of a rectangle: exact up to the eleventh power of x and of y."""
-
 
 class CrossSection(Kind, ABC, Generic[RecordType]):
     """One shape of cross-sections, about its centroid, whose axes x and y are principal ones."""
@@ -51,10 +42,14 @@ class CrossSection(Kind, ABC, Generic[RecordType]):
     def shape(self, sizes: Sizes) -> SectionShape:
         """Area, second moments and torsion constant of sections of these sizes."""
 
-    def fibres(self, sizes: Mapping[str, Matrix]) -> list[Fibre] | None:
+    def fibres(self, sizes: Mapping[str, Matrix], count: int) -> list[Fibre] | None:
         """Points of a quadrature over the section, x, y and area of each, m and m², symmetric about both axes.
 
         None for a shape that only linear materials may have.
+
+        Args:
+            sizes: sizes of the section by their keys, m.
+            count: points across half of the section: exact for products of powers of x and y below 4 ``count``.
         """
         return None
 
@@ -124,9 +119,9 @@ class CircleSection(CrossSection[scenes.Circle]):
         """The shape of a circle of this radius."""
         return section.circle(sizes["radius"])
 
-    def fibres(self, sizes: Mapping[str, Matrix]) -> list[Fibre]:
+    def fibres(self, sizes: Mapping[str, Matrix], count: int) -> list[Fibre]:
         """Quadrature points over the circle, as over a tube without bore."""
-        return _round_fibres(sizes["radius"], 0.0 * sizes["radius"])
+        return _round_fibres(sizes["radius"], 0.0 * sizes["radius"], count)
 
 
 @final
@@ -140,9 +135,9 @@ class AnnulusSection(CrossSection[scenes.Annulus]):
         """The shape of an annulus of these radii."""
         return section.annulus(sizes["outer_radius"], sizes["inner_radius"])
 
-    def fibres(self, sizes: Mapping[str, Matrix]) -> list[Fibre]:
+    def fibres(self, sizes: Mapping[str, Matrix], count: int) -> list[Fibre]:
         """Quadrature points between the two radii."""
-        return _round_fibres(sizes["outer_radius"], sizes["inner_radius"])
+        return _round_fibres(sizes["outer_radius"], sizes["inner_radius"], count)
 
 
 @final
@@ -156,9 +151,9 @@ class RectangleSection(CrossSection[scenes.Rectangle]):
         """The shape of a rectangle of this width along x and this height along y."""
         return section.rectangle(sizes["width"], sizes["height"])
 
-    def fibres(self, sizes: Mapping[str, Matrix]) -> list[Fibre]:
+    def fibres(self, sizes: Mapping[str, Matrix], count: int) -> list[Fibre]:
         """Product of Gauss points across the width and across the height."""
-        points, weights = gauss_legendre(POINTS_ACROSS)
+        points, weights = gauss_legendre(2 * count)
         width, height = sizes["width"], sizes["height"]
         return [
             (x / 2 * width, y / 2 * height, along_x * along_y / 4 * width * height)
@@ -171,16 +166,17 @@ class RectangleSection(CrossSection[scenes.Rectangle]):
         return sizes["width"] / 2, sizes["height"] / 2
 
 
-def _round_fibres(outer: Matrix, inner: Matrix) -> list[Fibre]:
+def _round_fibres(outer: Matrix, inner: Matrix, rings: int) -> list[Fibre]:
     """Points on rings between two radii, m: Gauss points in the square of the radius, equal areas in one ring."""
-    points, weights = gauss_legendre(RADIAL_POINTS)
+    points, weights = gauss_legendre(rings)
+    directions = 4 * rings
     squares = outer**2 - inner**2
     fibres = []
     for point, weight in zip((points + 1) / 2, weights / 2, strict=True):
         radius = (inner**2 + float(point) * squares) ** 0.5
-        area = np.pi * float(weight) / DIRECTIONS * squares
-        for direction in range(DIRECTIONS):
+        area = np.pi * float(weight) / directions * squares
+        for direction in range(directions):
             # Half a step off the axes, so that the points of the four quadrants are mirror images.
-            angle = 2 * np.pi * (direction + 0.5) / DIRECTIONS
+            angle = 2 * np.pi * (direction + 0.5) / directions
             fibres.append((float(np.cos(angle)) * radius, float(np.sin(angle)) * radius, area))
     return fibres

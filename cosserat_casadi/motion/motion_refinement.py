@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from cosserat_casadi.accuracy.levels import verified_modes, verified_nodes
+from cosserat_casadi.accuracy.levels import verified_modes, verified_nodes, with_fibres
 from cosserat_casadi.accuracy.refine import FINER_MODES
 from cosserat_casadi.equilibrium.blindness import TurnedElements
 from cosserat_casadi.equilibrium.solution import Solution
@@ -517,7 +517,7 @@ def _finer(scene: Scene, name: str, own: Discretisation, turn: float) -> Discret
     nodes = own.nodes + 2 * FINER_MODES
     if seeing > min(own.modes) + FINER_MODES:
         nodes = max(nodes, verified_nodes(scene, seeing, turn))
-    return replace(own, modes=modes, nodes=nodes)
+    return replace(own.with_more_fibres(), modes=modes, nodes=nodes)
 
 
 def _with_tolerance(search: _Search, first: Model) -> Motion:
@@ -828,7 +828,7 @@ def _largest_turn(history: History, duration: float) -> float:
 
 def _uniform(scene: Scene, modes: int, turn: float = 0.0) -> dict[str, Discretisation]:
     """Discretisation of every rod with one number of modes for all strains, for elements that turn by an angle, rad."""
-    return discretise(scene, modes, verified_nodes(scene, modes, turn))
+    return with_fibres(discretise(scene, modes, verified_nodes(scene, modes, turn)), modes)
 
 
 def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation] | None, float]:
@@ -846,8 +846,8 @@ def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation] 
     if search.last.is_blind:
         return uniform, 0.0
     moved_by = felt(history, search.simulation.duration)
-    # Sections find contact, and more modes have more of them.
-    if not search.scene.has_contact:
+    # Sections find contact, and more modes have more of them; and a finer level shows errors of laws that are summed.
+    if not (search.scene.has_contact or any(own.fibres for own in uniform.values())):
         left = lacking(history, search.simulation.duration)
         if max(left, search.last.fronts) <= SPACE_SHARE * search.tolerance:
             return None, left

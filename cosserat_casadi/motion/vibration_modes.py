@@ -27,7 +27,7 @@ from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
-from cosserat_casadi.model.discretise import discretise
+from cosserat_casadi.model.discretise import discretise, with_more_fibres
 from cosserat_casadi.model.required_modes import signal_modes
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.eigenproblem import REAL, ComplexArray, eigenpairs, slowest_told
@@ -391,7 +391,10 @@ def _on_level(coarser: Solution, polynomials: int, report: Report | None) -> Sol
     scene = without_contacts(coarser.model.scene)
     nodes = nodes_for_turn(polynomials, largest_turn(coarser)) + SPARE_NODES
     transport = "magnus8" if scene.accuracy.tolerance < TIGHT else "magnus6"
-    model = build(scene, discretise(scene, polynomials, nodes, transport))
+    chosen = discretise(scene, polynomials, nodes, transport)
+    # Finer sums of laws than the coarser solution's show the error of these.
+    finer = {name: replace(own, fibres=coarser.model.discretisation[name].fibres) for name, own in chosen.items()}
+    model = build(scene, with_more_fibres(finer))
     if report is not None:
         report(f"equilibrium of {model.size} unknowns, {nodes} intervals")
     inputs = given_inputs(coarser.model, coarser.inputs)

@@ -20,7 +20,7 @@ from cosserat_casadi.model.element_ends import CLOSEST, element_ends
 from cosserat_casadi.motion.checkpoint import Checkpoint, read_checkpoint
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene
-from cosserat_casadi.scene.accuracy import MOST_MODES, MOST_NODES, MOST_SECTIONS
+from cosserat_casadi.scene.accuracy import MOST_FIBRES, MOST_MODES, MOST_NODES, MOST_SECTIONS
 
 WHERE = "--from"
 
@@ -101,12 +101,13 @@ def _discretisation(data: Mapping[str, Any], scene: Scene) -> dict[str, Discreti
         modes = tuple(entry["modes"])
         _check_whole(*modes, least=1, most=MOST_MODES)
         _check_whole(entry["nodes"], least=2, most=MOST_NODES)
-        sections = entry.get("sections", 0)
-        _check_whole(sections, least=0, most=MOST_SECTIONS)
+        sums = entry.get("sections", 0), entry.get("fibres", 0)
+        _check_whole(sums[0], least=0, most=MOST_SECTIONS)
+        _check_whole(sums[1], least=0, most=MOST_FIBRES)
         places = _finite_array(breaks)
         if places[0] != 0.0 or places[-1] != 1.0 or np.diff(places).min() < CLOSEST:
             raise ValueError("breaks do not ascend from 0 to 1")
-        chosen[rod.name] = Discretisation(modes, entry["nodes"], tuple(places.tolist()), entry["transport"], sections)
+        chosen[rod.name] = Discretisation(modes, entry["nodes"], tuple(places.tolist()), entry["transport"], *sums)
     return chosen
 
 

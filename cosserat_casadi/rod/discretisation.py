@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from cosserat_casadi.maths.grid import Grid
@@ -21,6 +21,7 @@ class Discretisation:
         breaks: element ends on [0, 1]; a point load must sit on one.
         transport: one of TRANSPORTS.
         sections: sections of an element at which thin layers are summed; 0 for as many as its intervals ask for.
+        fibres: points across half of a section at which the law of its material is summed; 0 for one that is not.
     """
 
     modes: tuple[int, ...]
@@ -28,14 +29,19 @@ class Discretisation:
     breaks: tuple[float, ...] = (0.0, 1.0)
     transport: str = "magnus6"
     sections: int = 0
+    fibres: int = 0
 
     def __post_init__(self) -> None:
         if self.transport not in TRANSPORTS:
             raise ValueError(f"transport is one of {TRANSPORTS}, got {self.transport!r}")
 
     def plain(self) -> dict[str, Any]:
-        """The discretisation as data; ``sections`` is left out if it follows from the intervals."""
-        return {name: value for name, value in asdict(self).items() if name != "sections" or value}
+        """The discretisation as data; numbers of sums are left out where they are zero."""
+        return {name: value for name, value in asdict(self).items() if name not in ("sections", "fibres") or value}
+
+    def with_more_fibres(self, count: int = 1) -> Discretisation:
+        """The discretisation with further points for a law that is summed; itself for a law that is not."""
+        return replace(self, fibres=self.fibres + count) if self.fibres else self
 
     @property
     def elements(self) -> int:

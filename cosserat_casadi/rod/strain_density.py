@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import casadi as ca
 import numpy as np
@@ -104,26 +104,13 @@ class StrainDensityOnRod(Conjugate):
     def _at_nodes(self) -> tuple[Matrix, Matrix, Matrix]:
         """Density, 1×k, its gradient, 6×k, and its second derivatives column by column, 36×k, at the nodes."""
         present = [c for c, row in enumerate(self._strain_rows) if row is not None]
-        mapped = self._kernel(present).map(len(self.quantity.nodes))
+        kernel = _kernel(self.quantity.density, tuple(present), self.quantity.data.shape[0])
+        mapped = kernel.map(len(self.quantity.nodes))
         symbols = mapped.mx_in()
         # A CasADi map takes no options itself.
-        kernel = ca.Function("densities", symbols, mapped.call(symbols), ONE_DIRECTION)
-        density, gradient, second = kernel.call([self.strain, as_matrix(self.quantity.data)])
+        densities = ca.Function("densities", symbols, mapped.call(symbols), ONE_DIRECTION)
+        density, gradient, second = densities.call([self.strain, as_matrix(self.quantity.data)])
         return density, gradient, second
-
-    def _kernel(self, present: list[int]) -> ca.Function:
-        """(strain, data) ↦ (density, gradient, second derivatives) of one section."""
-        # A strain that is zero for every shape has no symbol, so that no code is written for it.
-        first_column = [0] * len(present)
-        pattern = ca.Sparsity.triplet(6, 1, present, first_column)
-        strain = ca.SX.sym("strain", pattern)
-        data = ca.SX.sym("data", self.quantity.data.shape[0])
-        # The function is called with symbols once; the map below evaluates the derivatives.
-        density = self.quantity.density(strain, data)
-        gradient = ca.jacobian(density, strain).T
-        second = ca.vec(ca.jacobian(gradient, strain))
-        results = ca.cse([density, gradient, second])
-        return ca.Function("density", [strain, data], results)
 
     @property
     def _reference_lengths(self) -> FloatArray:
@@ -147,6 +134,21 @@ class StrainDensityOnRod(Conjugate):
         if ratio is None:
             return rates
         return ratio * (ca.DM.ones(len(self.quantity.nodes)) if rates is None else as_matrix(rates))
+
+
+@lru_cache(maxsize=32)
+def _kernel(density: Density, present: tuple[int, ...], data_size: int) -> ca.Function:
+    """(strain, data) ↦ (density, gradient, second derivatives) of one section, of the strains that may be present."""
+    # A strain that is zero for every shape has no symbol, so that no code is written for it.
+    first_column = [0] * len(present)
+    pattern = ca.Sparsity.triplet(6, 1, list(present), first_column)
+    strain = ca.SX.sym("strain", pattern)
+    data = ca.SX.sym("data", data_size)
+    # The function is called with symbols once; a map evaluates the derivatives.
+    value = density(strain, data)
+    gradient = ca.jacobian(value, strain).T
+    second = ca.vec(ca.jacobian(gradient, strain))
+    return ca.Function("density", [strain, data], ca.cse([value, gradient, second]))
 
 
 def energy_beyond_hooke(shape: Shape) -> StrainDensityOnRod | None:

@@ -21,6 +21,9 @@ MOST_NODES = 1000
 MOST_SECTIONS = 1500
 """Most sections of an element, at which layers are summed, that a scene may ask for."""
 
+MOST_FIBRES = 12
+"""Most points across half of a section, at which a law is summed, that a scene may ask for."""
+
 Modes = Annotated[Whole, Field(ge=1, le=MOST_MODES)]
 ModesChoice = Annotated[
     Annotated[Modes, SINGLE] | Annotated[tuple[Modes, ...], NotEmpty(), SEVERAL],
@@ -43,6 +46,7 @@ Range = Annotated[str, AfterValidator(_ascending)]
 
 Nodes = Annotated[Whole, Field(ge=2, le=MOST_NODES)]
 Sections = Annotated[Whole, Field(ge=1, le=MOST_SECTIONS)]
+Fibres = Annotated[Whole, Field(ge=1, le=MOST_FIBRES)]
 Rotation = Literal["magnus4", "magnus6", "magnus8", "permuted"]
 
 
@@ -66,6 +70,7 @@ of_rods = [{ rod = "finger", modes = [6, 6, 2], nodes = 14, rotation = "magnus6"
     sections: Sections | None = Field(
         None, description="sections of an element at which layers are summed, a whole number"
     )
+    fibres: Fibres | None = Field(None, description="points across half of its section at which a law is summed")
 
 
 class Accuracy(Record):
@@ -97,6 +102,11 @@ shape = true
         description="beside obstacles with a width and without friction: sections of an element at which their push is "
         "summed, a whole number; as many as the intervals ask for when left out",
     )
+    fibres: Fibres | None = Field(
+        None,
+        description="for rods of rubber: points across half of a section at which the law is summed, a whole number n: "
+        "4 n² fibres; 3 when left out",
+    )
     of_rods: tuple[RodDiscretisation, ...] = Field(
         (), description="modes, nodes and rotation of single rods, as `cosserat export` writes them where rods differ"
     )
@@ -116,8 +126,9 @@ shape = true
         """Refuse keys that have no meaning without modes, nodes or rotation for all rods."""
         if "chosen_for" in given and "modes" not in given:
             yield Fault(("chosen_for",), "stands without modes", "leave it out: it holds ranges of chosen modes")
-        if "sections" in given and "nodes" not in given:
-            yield Fault(("sections",), "stands without nodes", "give modes and nodes, or leave it out")
+        for key in ("sections", "fibres"):
+            if key in given and "nodes" not in given:
+                yield Fault((key,), "stands without nodes", "give modes and nodes, or leave it out")
         if given.get("of_rods") and not {"modes", "nodes", "rotation"} <= given.keys():
             yield Fault(("of_rods",), "stands without modes, nodes and rotation of the others", "give all three")
 

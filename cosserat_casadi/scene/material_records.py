@@ -30,6 +30,9 @@ class Material(Record):
 material = { youngs_modulus = 2.0e9, poisson_ratio = 0.4, density = 1100.0 }
 """
 
+    fibres: ClassVar[int] = 0
+    """Least points across half of a section at which the law is summed; 0 for a law that is not summed."""
+
     youngs_modulus: Positive = Field(description="Young's modulus E, Pa")
     poisson_ratio: PoissonRatio | None = Field(
         None, description="Poisson's ratio, without unit; instead of shear_modulus"
@@ -212,6 +215,8 @@ class IncompressibleMaterial(Material):
     """
 
     moduli: ClassVar[tuple[str, ...]] = ()
+
+    fibres: ClassVar[int] = 3
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:

@@ -84,8 +84,7 @@ def read_scene(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> S
         SceneError: the file or an override is faulty; it lists every fault.
     """
     file = Path(path)
-    tables = parsed(file_text(file))
-    scene = _scene(tables, overrides, file.parent)
+    scene = _scene(parsed(file_text(file), str(file)), overrides, file.parent, str(file))
     for note in _unlikely_numbers(scene):
         LOG.warning("%s", note)
     return scene
@@ -170,13 +169,13 @@ def override_path(mapping: Mapping[str, Any], key: str) -> FaultPath:
     return assignment.leaf
 
 
-def _scene(mapping: Mapping[str, Any], overrides: Sequence[str], folder: Path) -> Scene:
+def _scene(mapping: Mapping[str, Any], overrides: Sequence[str], folder: Path, where: str = "") -> Scene:
     try:
         tables = _copy(mapping)
         return _validated(tables, overrides, folder)
     # Copying, reading and testing the tables are recursive.
     except RecursionError:
-        raise SceneError(Problem("", TOO_DEEP)) from None
+        raise SceneError(Problem(where, TOO_DEEP)) from None
 
 
 def _validated(tables: Any, overrides: Sequence[str], folder: Path) -> Scene:

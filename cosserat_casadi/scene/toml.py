@@ -71,22 +71,26 @@ WRITTEN_TWICE = "a key, or a table, stands twice; each entry of a list has its o
 """Remedy for keys that TOML cannot declare or overwrite."""
 
 
-def parsed(text: str) -> dict[str, Any]:
+def parsed(text: str, where: str = "") -> dict[str, Any]:
     """Parse TOML text.
+
+    Args:
+        text: the text.
+        where: the file of the text, for a problem of all of it.
 
     Raises:
         SceneError: it is not TOML, is empty, too large or nested too deeply.
     """
     if len(text) > LARGEST:
-        raise SceneError(_too_large("", len(text)))
+        raise SceneError(_too_large(where, len(text)))
     if not text.strip():
-        raise SceneError(Problem("", *EMPTY))
+        raise SceneError(Problem(where, *EMPTY))
     if keys_are_too_deep(text):
-        raise SceneError(Problem("", TOO_DEEP))
+        raise SceneError(Problem(where, TOO_DEEP))
     try:
         return tomllib.loads(text)
     except RecursionError:
-        raise SceneError(Problem("", TOO_DEEP)) from None
+        raise SceneError(Problem(where, TOO_DEEP)) from None
     except ValueError as error:
         raise SceneError(_syntax_problem(str(error))) from None
 

@@ -36,7 +36,7 @@ LOADS_ON_TUBES = ("tip_wrench", "point_wrench", "distributed_wrench", "gravity")
 MEASURED_ON_TUBES = ("position", "pose")
 """Quantities that can be measured on tubes."""
 
-OF_RODS = ("shape", "modes", "nodes", "rotation", "sections", "chosen_for")
+OF_RODS = ("shape", "modes", "nodes", "rotation", "sections", "fibres", "chosen_for")
 """Keys of `[accuracy]` that are for rods."""
 
 

@@ -63,6 +63,7 @@ class Choice:
                 "nodes": chosen.nodes,
                 "rotation": chosen.transport,
                 "sections": chosen.sections,
+                **({"fibres": chosen.fibres} if chosen.fibres else {}),
             }
         return {
             "discretisation": discretisation,
@@ -78,8 +79,8 @@ class Choice:
         discretisation = None
         if entries:
             modes = tuple(entries["modes"])
-            transport, sections = entries["rotation"], entries.get("sections", 0)
-            discretisation = Discretisation(modes, entries["nodes"], transport=transport, sections=sections)
+            sums = {key: entries.get(key, 0) for key in ("sections", "fibres")}
+            discretisation = Discretisation(modes, entries["nodes"], transport=entries["rotation"], **sums)
         return cls(discretisation, tuple(plain["rows"]), plain["converged"], plain["error_estimate"])
 
 

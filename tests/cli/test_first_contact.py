@@ -251,6 +251,8 @@ def test_every_family_of_errors_leads_to_a_page() -> None:
         (SceneError(Problem("--plot", "has no suffix")), "command-line"),
         (SceneError(Problem("--plot", "has no suffix"), Problem("rods", "are missing")), "scene"),
         (SceneError(Problem("PAGE", "there is none")), "command-line"),
+        (SceneError(Problem("loads.csv, line 2", "is no number"), page="sweeps"), "sweeps"),
+        (SceneError(Problem("--samples", "is no number"), page="sweeps"), "command-line"),
         (ExportError(Problem("scene", "cannot be exported")), "c-interface"),
     ],
 )

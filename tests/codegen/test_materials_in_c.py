@@ -10,6 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Outcome, solve
+from tests.accuracy import test_fibres as fibres
 from tests.codegen.libraries import Exported, Recipe
 from tests.equilibrium.test_answer_error import stiffened
 from tests.families import mostly_slow
@@ -62,3 +63,16 @@ def test_error_of_a_strained_law_vs_python(export_recipe: ExportRecipe) -> None:
         assert in_c.error_estimate is not None and in_python.error_estimate is not None
         assert 1e-6 < in_c.error_estimate < 0.1
         assert_allclose(in_c.error_estimate, in_python.error_estimate, rtol=0.05, atol=0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("law", fibres.LAWS)
+def test_error_of_the_sum_over_fibres_is_told(export_recipe: ExportRecipe, law: str) -> None:
+    scene = fibres.scene(law, "circle", 0.002, tolerance=1e-6)
+    made = export_recipe(f"fibres_{law}", Recipe(scene, 1, 20, "magnus8"))
+    for moment in (0.002, 0.008, fibres.MOMENT):
+        inputs = np.array([moment, 0.0, 0.0])
+        in_c, in_python = made.compiled.solve(inputs), solve(made.model, inputs)
+        assert in_c.error_estimate is not None and in_python.error_estimate is not None
+        assert fibres.error_of(in_python.tip().position, law, "circle", moment) <= in_c.error_estimate
+        assert_allclose(in_c.error_estimate, in_python.error_estimate, rtol=0.05, atol=1e-11)

@@ -104,6 +104,7 @@ def test_a_faulty_table_is_refused(change: dict[str, Any], sentence: str) -> Non
     with pytest.raises(SceneError) as refusal:
         cases_of([{**POSITION, "inputs": SETS, **change}], {"a.csv": TABLE})
     assert sentence in str(refusal.value)
+    assert refusal.value.page == "identify"
 
 
 def test_rows_of_one_case_agree_on_its_inputs() -> None:

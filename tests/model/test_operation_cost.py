@@ -136,6 +136,7 @@ def test_compared_functions_are_counted_alike() -> None:
     assert str(Count(20_123_456, exact=False)) == "at most 21,000,000"
     assert str(Count(1234, exact=True)) == "1,234"
     assert str(Count(7, exact=False)) == "at most 7"
+    assert str(Count(7, exact=False) - Count(5_011, exact=False)) == "about -5,000"
 
 
 def test_a_scene_without_a_load_has_nothing_that_is_of_it() -> None:

@@ -454,6 +454,14 @@ def test_no_value_anywhere_leads_to_anything_but_a_scene_or_a_plain_refusal(spot
             assert_plain(error)
 
 
+def test_refused_text_names_its_file(tmp_path):
+    file = tmp_path / "deep.toml"
+    file.write_text("schema = " + "[" * 100_000, encoding="utf-8")
+    with pytest.raises(SceneError, match="nested too deeply") as refusal:
+        read_scene(file)
+    assert refusal.value.problems[0].where == str(file)
+
+
 def test_deep_tables_from_python_are_refused():
     deep = []
     for _ in range(100_000):

@@ -115,7 +115,8 @@ def sweep(
             )
     _check_colour(colour, plot, plan, problems)
     if problems or plan is None:
-        raise SceneError(*problems)
+        # Faults beside a sound scene are those of the table.
+        raise SceneError(*problems, page="scene" if swept_scene is None else "sweeps")
 
     # Evaluated now: after the run the sweep is always finished.
     finished_before = plan.finished
