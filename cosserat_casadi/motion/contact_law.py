@@ -276,11 +276,10 @@ def program_record(function: ca.Function) -> Held:
         return function_record(RepeatedCall(function))
     held = Held(KernelRecord())
     record = held.record
-    lines, slots, _ = program
     give_memory(held, [np.zeros(function.nnz_in())], np.zeros(function.nnz_out()))
-    held.share("program", np.ascontiguousarray(lines))
-    held.share("slots", np.repeat(slots, LANES))
-    record.lines, record.size = len(lines), function.nnz_out()
+    held.share("program", program.in_c)
+    held.share("slots", np.repeat(program.slots, LANES))
+    record.lines, record.size = len(program.lines), function.nnz_out()
     record.run = address_of(steps_library().program_run)
     return held
 

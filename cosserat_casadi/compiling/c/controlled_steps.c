@@ -312,8 +312,33 @@ static void motion_in(real size, real share, const real *values, const real *int
   }
 #endif
 
+/* A line computes some slots, and reads as many after each operand. */
+#define MANY(statement) \
+  for (int left = line[5]; left > 0; left--, to += LANES, a += LANES, b += LANES, c += LANES) statement;
+
+/* Or it finds the slots in tables, which lie behind the lines. */
+#define GATHER                       \
+  {                                  \
+    const int *from = tables + line[2]; \
+    for (int left = line[5]; left > 0; left--, to += LANES) STORE(to, LOAD(slots + LANES * *from++)); \
+  }
+
+#define ADD_PRODUCTS \
+  { \
+    const int *counts = tables + line[2]; \
+    const int *pair = tables + line[3]; \
+    for (int left = line[5]; left > 0; left--, to += LANES) { \
+      FOUR sum = SPREAD(0); \
+      for (const int *end = pair + 2 * *counts++; pair < end; pair += 2) { \
+        sum += LOAD(slots + LANES * pair[0]) * LOAD(slots + LANES * pair[1]); \
+      } \
+      STORE(to, sum); \
+    } \
+  }
+
 FASTEST static void run_lines(const int *program, int lines, real *slots) {
-  for (const int *line = program; line < program + 5 * lines; line += 5) {
+  const int *tables = program + 6 * lines;
+  for (const int *line = program; line < tables; line += 6) {
     real *to = slots + LANES * line[1];
     const real *a = slots + LANES * line[2];
     const real *b = slots + LANES * line[3];
