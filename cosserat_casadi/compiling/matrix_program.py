@@ -18,7 +18,9 @@ from cosserat_casadi.maths.typing import FloatArray
 
 
 def matrix_program(function: ca.Function) -> ScalarProgram | None:
-    """Make the program of a function of matrices (an ``MXFunction``); None if an instruction is not supported."""
+    """Make the program of a function of matrices or of scalars; None if an instruction is not supported."""
+    if not function.is_a("MXFunction"):
+        return scalar_program(function)
     writer = _Writer()
     arguments = [writer.slots_for(function.sparsity_in(i)) for i in range(function.n_in())]
     place = writer.new(np.zeros(function.nnz_out()))
@@ -116,7 +118,7 @@ class _Writer:
         return self._mapped(instruction_in_scalars(code, node, operands), 1, operands)
 
     def _is_chain(self, function: ca.Function) -> bool:
-        """Whether a function of matrices calls others one after the other, with little in each: in scalars it is as short."""
+        """Whether a function of matrices mostly calls others: in scalars it is as short."""
         return bool(function.find_functions(0)) and function.expand().n_instructions() < 4 * function.n_instructions()
 
     def _spread(self, operand: Value, count: int) -> Numbers:
@@ -165,32 +167,25 @@ class _Writer:
         return Value(matrix.sparsity(), self._constants[key])
 
     def _product(self, added: Value, left: Value, right: Value) -> Value:
-        """Write the line of added + left right; return the sum."""
-        result = self.slots_for(added.pattern)
-        rows, width = added.pattern.size1(), added.pattern.size2()
+        """Write the line of added + left right, in the entries of the former; return the sum."""
+        stored = _places(added.pattern)
         # Each entry of the right matrix is multiplied with a column of the left one.
         ends = np.array(left.pattern.colind())
-        inner = np.array(right.pattern.row(), dtype=np.int64)
-        counts = np.diff(ends)[inner]
-        of_right = np.repeat(np.arange(len(inner)), counts)
-        within = np.arange(len(of_right)) - np.repeat(np.cumsum(counts) - counts, counts)
-        of_left = ends[inner][of_right] + within
-        columns = np.repeat(np.arange(width), np.diff(right.pattern.colind()))
-        places = np.array(left.pattern.row(), dtype=np.int64)[of_left] + rows * columns[of_right]
-        pairs = np.stack([left.numbers[of_left], right.numbers[of_right]], axis=1)
-        kept = pairs.all(axis=1)
-        own = np.flatnonzero(added.numbers)
-        stored = np.array(added.pattern.row(), dtype=np.int64)
-        stored += rows * np.repeat(np.arange(width), np.diff(added.pattern.colind()))
-        if len(own):
-            one = self._constant(ca.DM(1.0)).numbers[0]
-            added_pairs = np.stack([added.numbers[own], np.full(len(own), one)], axis=1)
-            pairs, places = np.concatenate([added_pairs, pairs[kept]]), np.concatenate([stored[own], places[kept]])
-        else:
-            pairs, places = pairs[kept], places[kept]
-        order = np.argsort(places, kind="stable")
+        row, column = _rows_and_columns(right.pattern)
+        counts = np.diff(ends)[row]
+        of_right = np.repeat(np.arange(len(row)), counts)
+        of_left = np.arange(len(of_right)) + np.repeat(ends[row] - np.cumsum(counts) + counts, counts)
+        places = _rows_and_columns(left.pattern)[0][of_left] + left.pattern.size1() * column[of_right]
+        one = self._constant(ca.DM(1.0)).numbers
+        factors = np.stack([left.numbers[of_left], right.numbers[of_right]], axis=1)
+        whole = np.stack([added.numbers, np.broadcast_to(one, added.numbers.shape)], axis=1)
+        factors, places = np.concatenate([whole, factors]), np.concatenate([stored, places])
+        kept = factors.all(axis=1) & np.isin(places, stored)
+        factors, places = factors[kept], places[kept]
         counts = np.bincount(np.searchsorted(stored, places), minlength=len(stored))
-        self._write(SUMS_OF_PRODUCTS, result.numbers, self._table(counts), self._table(self._slots_of(pairs[order])))
+        pairs = self._slots_of(factors[np.argsort(places, kind="stable")])
+        result = self.slots_for(added.pattern)
+        self._write(SUMS_OF_PRODUCTS, result.numbers, self._table(counts), self._table(pairs))
         return result
 
     def _write(self, code: int, to: Numbers, *operands: int) -> None:
@@ -207,3 +202,15 @@ class _Writer:
         self._tables.append(entries)
         self._table_size += len(entries)
         return first
+
+
+def _rows_and_columns(pattern: ca.Sparsity) -> tuple[Numbers, Numbers]:
+    """Row and column of each stored entry."""
+    columns = np.repeat(np.arange(pattern.size2()), np.diff(pattern.colind()))
+    return np.array(pattern.row(), dtype=np.int64), columns
+
+
+def _places(pattern: ca.Sparsity) -> Numbers:
+    """Ascending places of the stored entries in a matrix with all entries."""
+    rows, columns = _rows_and_columns(pattern)
+    return rows + pattern.size1() * columns

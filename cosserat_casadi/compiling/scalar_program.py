@@ -204,7 +204,7 @@ def _without_copies(lines: Lines, results: slice) -> Lines:
 
 
 def _with_products(lines: Lines, results: slice) -> Lines:
-    """Make lines with three operands, of one slot each, where a product and the only sum that reads it become one line."""
+    """Make lines on single slots with three operands; a product and the only sum that reads it become one line."""
     operation, to, first, second = lines.T
     definitions = _definitions(lines)
     read = np.concatenate([definitions[:, 0], definitions[first != second, 1]])
