@@ -48,7 +48,8 @@ class _Writer:
         self._tables: list[Numbers] = []
         self._table_size = 0
         self._constants: dict[bytes, Numbers] = {}
-        self._programs: dict[int, ScalarProgram | None] = {}
+        # A function that is kept keeps its hash from others.
+        self._programs: dict[int, tuple[ca.Function, ScalarProgram | None]] = {}
 
     def program(self, arguments: int) -> ScalarProgram:
         """Return the program of all lines, whose first slots are those of so many arguments."""
@@ -138,8 +139,9 @@ class _Writer:
         """Write the lines of a function of scalars at so many points side by side; return its results."""
         key = hash(function)
         if key not in self._programs:
-            self._programs[key] = scalar_program(function.expand() if function.is_a("MXFunction") else function)
-        program = self._programs[key]
+            scalars = function.expand() if function.is_a("MXFunction") else function
+            self._programs[key] = function, scalar_program(scalars)
+        _, program = self._programs[key]
         if program is None:
             raise UnknownInstructionError
         own = self.new(np.repeat(program.slots, count))

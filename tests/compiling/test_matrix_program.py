@@ -65,6 +65,17 @@ def test_entries_that_move() -> None:
     assert_same(ca.Function("moved", [x, y], results))
 
 
+def test_instructions_that_are_expanded_one_after_the_other() -> None:
+    """Functions made for single instructions are not taken for each other."""
+    x = ca.MX.sym("x", 8)
+    whole = ca.sin(x)
+    for last in (4, 3, 2, 6, 5):
+        added = ca.MX(whole)
+        added.set_nz(whole[:last].nz[:] * x[last], False, list(range(last)))
+        whole = added + ca.dot(whole[:last], x[:last]) + ca.mmax(whole[:last]) * ca.norm_1(whole)
+    assert_same(ca.Function("expanded", [x], [whole]))
+
+
 def test_maps_and_chains() -> None:
     """A map is a line for each instruction of its function, a chain of calls as many as there are links."""
     a, b = ca.SX.sym("a", 2), ca.SX.sym("b")
