@@ -169,7 +169,7 @@ class _Writer:
         return Value(matrix.sparsity(), self._constants[key])
 
     def _product(self, added: Value, left: Value, right: Value) -> Value:
-        """Write the line of added + left right, in the entries of the former; return the sum."""
+        """Write the line of added + left right at the stored entries of ``added``; return the sum."""
         stored = _places(added.pattern)
         # Each entry of the right matrix is multiplied with a column of the left one.
         ends = np.array(left.pattern.colind())
