@@ -24,6 +24,9 @@ Lines = npt.NDArray[np.intc]
 PLUS_PRODUCT, MINUS_PRODUCT, PRODUCT_MINUS = range(300, 303)
 """Operations in addition to CasADi's: c + a b, c − a b and a b − c, rounded twice as by two instructions."""
 
+GATHERED, SUMS_OF_PRODUCTS = 310, 311
+"""Operations that read slots from tables: copies of slots, and for each result a number of products and their sum."""
+
 OF_TWO = {"atan2", "pow", "fmin", "fmax", "fmod", "copysign", "hypot"}
 """Functions of the mathematical library with two arguments."""
 
@@ -46,14 +49,22 @@ class ScalarProgram(NamedTuple):
     """A function as lines on numbered slots: first the slots of arguments, then those of results.
 
     Attributes:
-        lines: shape (lines, 5), with three operands.
+        lines: shape (lines, 6): operation, first slots of the result and of three operands, number of slots of each.
+            In place of operands some have places in the tables.
         slots: initial contents of the slots, with constants in place, shape (slots,).
         arguments: number of slots of arguments.
+        tables: numbers of slots that do not lie side by side.
     """
 
     lines: Lines
     slots: FloatArray
     arguments: int
+    tables: Lines = np.zeros(0, np.intc)
+
+    @property
+    def in_c(self) -> Lines:
+        """The lines with the tables behind them, as C reads them."""
+        return np.concatenate([self.lines.ravel(), self.tables])
 
 
 def scalar_program(function: ca.Function) -> ScalarProgram | None:
@@ -193,7 +204,7 @@ def _without_copies(lines: Lines, results: slice) -> Lines:
 
 
 def _with_products(lines: Lines, results: slice) -> Lines:
-    """Make lines with three operands, where a product and the only sum that reads it become one line."""
+    """Make lines on single slots with three operands; a product and the only sum that reads it become one line."""
     operation, to, first, second = lines.T
     definitions = _definitions(lines)
     read = np.concatenate([definitions[:, 0], definitions[first != second, 1]])
@@ -203,7 +214,7 @@ def _with_products(lines: Lines, results: slice) -> Lines:
     is_first, is_second = first[1:] == to[:-1], second[1:] == to[:-1]
     products = np.flatnonzero(is_product[:-1] & is_sum & (is_first != is_second))
     sums = products + 1
-    joined = np.concatenate([lines, first[:, None]], axis=1)
+    joined = np.concatenate([lines, first[:, None], np.ones_like(first)[:, None]], axis=1)
     joined[sums, 2:4] = lines[products, 2:4]
     joined[sums, 4] = np.where(is_first[products], second[sums], first[sums])
     difference = np.where(is_first[products], PRODUCT_MINUS, MINUS_PRODUCT)
@@ -214,6 +225,7 @@ def _with_products(lines: Lines, results: slice) -> Lines:
 def cases_in_c() -> str:
     """Write the cases of the loop in C by operation: operands ``a``, ``b``, ``c`` of a line, and its result ``to``."""
     loaded = {code: text.format(a="LOAD(a)", b="LOAD(b)", c="LOAD(c)") for code, text in FOURS.items()}
-    lines = [f"    case {code}: STORE(to, {text}); break;" for code, text in sorted(loaded.items())]
-    lines += [f"    case {code}: EVERY(to[i] = {text}); break;" for code, text in sorted(NUMBERS.items())]
+    lines = [f"    case {code}: MANY(STORE(to, {text})) break;" for code, text in sorted(loaded.items())]
+    lines += [f"    case {code}: MANY(EVERY(to[i] = {text})) break;" for code, text in sorted(NUMBERS.items())]
+    lines += [f"    case {GATHERED}: GATHER break;", f"    case {SUMS_OF_PRODUCTS}: ADD_PRODUCTS break;"]
     return " \\\n".join(lines)

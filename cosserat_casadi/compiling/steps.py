@@ -125,7 +125,7 @@ class _Reading:
                 results = [self._constant(node.to_DM())]
             else:
                 operands = [values[variable] for variable in given]
-                results = _moved(code, node, operands) or self._computed(code, node, operands)
+                results = moved(code, node, operands) or self._computed(code, node, operands)
             for variable, result in zip(function.instruction_output(k), results, strict=True):
                 values[variable] = result
         return [Value(function.sparsity_out(i), numbers) for i, numbers in enumerate(outputs)]
@@ -149,12 +149,7 @@ class _Reading:
             return [self._elementwise(code, node, operands)]
         if code in ADDING:
             return [self._added(node, *operands)]
-        symbols = [ca.MX.sym("operand", operand.pattern) for operand in operands]
-        as_it_is = ca.Function("instruction", symbols, [_with_operands(code, node, symbols)])
-        try:
-            scalar = as_it_is.expand()
-        except RuntimeError as error:
-            raise UnknownInstructionError from error
+        scalar = instruction_in_scalars(code, node, operands)
         return self._step(scalar, operands, _length(scalar), called=True)
 
     def _mapped(self, function: ca.Function, operands: Sequence[Value]) -> list[Value]:
@@ -408,7 +403,7 @@ def _entrywise(code: int, sizes: tuple[int, ...]) -> ca.Function:
     return ca.Function("operation", symbols, [result])
 
 
-def _moved(code: int, node: ca.MX, operands: Sequence[Value]) -> list[Value]:
+def moved(code: int, node: ca.MX, operands: Sequence[Value]) -> list[Value]:
     """Return the results of an instruction that only moves entries; empty for one that computes."""
     first = operands[0]
     numbers = first.numbers
@@ -432,6 +427,20 @@ def _moved(code: int, node: ca.MX, operands: Sequence[Value]) -> list[Value]:
     elif code not in SAME_ENTRIES:
         return []
     return [Value(node.sparsity(), numbers)]
+
+
+def instruction_in_scalars(code: int, node: ca.MX, operands: Sequence[Value]) -> ca.Function:
+    """Make an instruction a function of scalars.
+
+    Raises:
+        UnknownInstructionError: CasADi has no way to do that.
+    """
+    symbols = [ca.MX.sym("operand", operand.pattern) for operand in operands]
+    as_it_is = ca.Function("instruction", symbols, [_with_operands(code, node, symbols)])
+    try:
+        return as_it_is.expand()
+    except RuntimeError as error:
+        raise UnknownInstructionError from error
 
 
 def _with_operands(code: int, node: ca.MX, operands: Sequence[ca.MX]) -> ca.MX:

@@ -102,7 +102,7 @@ def _parts(program: ScalarProgram, results: int) -> tuple[list[list[str]], int]:
 
     A value that one part computes and another reads is in memory, in a place behind arguments and results.
     """
-    lines, slots, arguments = program
+    lines, slots, arguments = program.lines[:, :5], program.slots, program.arguments
     size = arguments + results
     # The line that wrote a slot last, and all readers of a line.
     writer: dict[int, int] = {}

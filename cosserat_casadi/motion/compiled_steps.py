@@ -175,11 +175,10 @@ class CompiledSteps:
         """Have C run a program in place of CasADi's virtual machine, from the next step on."""
         if program is None:
             return
-        lines, slots, arguments = program
         # Four lanes of each slot: a run of its own, since constants are among them.
-        self._held.share("program", lines)
-        self._held.share("slots", np.repeat(slots, LANES))
-        self._record.program_lines, self._record.program_arguments = len(lines), arguments
+        self._held.share("program", program.in_c)
+        self._held.share("slots", np.repeat(program.slots, LANES))
+        self._record.program_lines, self._record.program_arguments = len(program.lines), program.arguments
         self._without_program = None
 
     def _share_contacts(self, residual: PushedResidual) -> None:

@@ -13,11 +13,10 @@ import numpy as np
 
 from cosserat_casadi.compiling.compiler import compiled_texts, find_compiler
 from cosserat_casadi.compiling.listing import LANES
-from cosserat_casadi.compiling.scalar_program import scalar_program
+from cosserat_casadi.compiling.matrix_program import matrix_program
 from cosserat_casadi.compiling.shared_records import POINTER, Held, address_of, raise_what_was_raised
 from cosserat_casadi.compiling.texts import render, resource
 from cosserat_casadi.errors import ExportError, Problem
-from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.repeated_call import RepeatedCall, repeated
@@ -271,16 +270,15 @@ def function_record(call: RepeatedCall) -> Held:
 
 def program_record(function: ca.Function) -> Held:
     """Make the record with which C calls a function with one result: as a program, or by CasADi's virtual machine."""
-    program = scalar_program(function)
+    program = matrix_program(function)
     if program is None:
         return function_record(RepeatedCall(function))
     held = Held(KernelRecord())
     record = held.record
-    lines, slots, _ = program
     give_memory(held, [np.zeros(function.nnz_in())], np.zeros(function.nnz_out()))
-    held.share("program", np.ascontiguousarray(lines))
-    held.share("slots", np.repeat(slots, LANES))
-    record.lines, record.size = len(lines), function.nnz_out()
+    held.share("program", program.in_c)
+    held.share("slots", np.repeat(program.slots, LANES))
+    record.lines, record.size = len(program.lines), function.nnz_out()
     record.run = address_of(steps_library().program_run)
     return held
 
@@ -289,7 +287,7 @@ def called_in_c(function: ca.Function, library: str | None) -> Held:
     """Make the record with which C calls a function: from a shared object, or without one as a program."""
     if library is not None:
         return function_record(repeated(function, library))
-    return program_record(function if chooses(function) else function.expand())
+    return program_record(function)
 
 
 def give_memory(held: Held, arguments: Sequence[FloatArray], result: FloatArray) -> None:

@@ -18,6 +18,7 @@ import casadi as ca
 from cosserat_casadi.compiling.cache import cache_folder, tallied, tally
 from cosserat_casadi.compiling.compiler import compiled_from, compiled_texts, find_compiler, flags_of_machine
 from cosserat_casadi.compiling.description import key_of
+from cosserat_casadi.compiling.matrix_program import matrix_program
 from cosserat_casadi.compiling.printed_kernels import Kernel
 from cosserat_casadi.compiling.scalar_program import ScalarProgram, scalar_program
 from cosserat_casadi.compiling.straight_program import straight_kernels
@@ -76,10 +77,10 @@ INSTRUCTION = 7e-9
 AS_MANY_RESIDUALS = 10.0
 """Time of the derivatives of inverse dynamics there, over inverse dynamics: 6 to 15 for robots of one to six rods."""
 
-SAVED = {PROGRAM: 0.75, RESIDUAL: 0.2, JACOBIANS: 0.9}
+SAVED = {PROGRAM: 0.9, RESIDUAL: 0.2, JACOBIANS: 0.9}
 """Share of the virtual machine's time saved by a program, by machine code beyond a program, and by machine code."""
 
-TO_COMPILE = {PROGRAM: (0.0, 4e-6), RESIDUAL: (0.3, 7e-5), JACOBIANS: (0.3, 3.3e-4)}
+TO_COMPILE = {PROGRAM: (0.01, 1.2e-6), RESIDUAL: (0.3, 7e-5), JACOBIANS: (0.3, 3.3e-4)}
 """Processor time for writing and compiling a function, s, and the further time for each instruction, s."""
 
 ITERATION = 2e-4
@@ -252,7 +253,7 @@ def _program_of(model: Model, *, write: bool) -> ScalarProgram | None:
     """Return inverse dynamics as a program; None if it is not written and ``write`` is false, or if it has none."""
     written: dict[str, ScalarProgram | None] = kept_with(model, "_programs", dict)
     if PROGRAM not in written and write:
-        written[PROGRAM] = scalar_program(model.inverse_dynamics_in_scalars)
+        written[PROGRAM] = matrix_program(model.inverse_dynamics)
     return written.get(PROGRAM)
 
 
@@ -385,7 +386,7 @@ def _straight(model: Model, residual: ca.Function) -> list[Kernel]:
     """Inverse dynamics without loops, and for the stages of a step at once; with loops where that is too long."""
     if can_be_centred(model) or _instructions(model) > MOST_STRAIGHT:
         return [residual]
-    program = _program_of(model, write=True)
+    program = scalar_program(model.inverse_dynamics_in_scalars)
     if program is None or len(program.lines) > MOST_LINES * _instructions(model):
         return [residual]
     return straight_kernels(program, residual, AT_STAGES)

@@ -196,7 +196,7 @@ class RubbingSteps:
         self._held = self._record()
         self._told = np.zeros((self.sizes.most_told, self.sizes.row))
         self._held.share("told", self._told)
-        self._residual = program_record(model.inverse_dynamics_in_scalars)
+        self._residual = program_record(model.inverse_dynamics)
         counts_of_bytes = (self.sizes.memory, self.sizes.workspace)
         self._memory, self._workspace = (ctypes.create_string_buffer(count) for count in counts_of_bytes)
 

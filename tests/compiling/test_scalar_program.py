@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Callable
 from typing import Any
 
 import casadi as ca
@@ -11,7 +12,14 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from cosserat_casadi.compiling.listing import BINARY, CHOICES, FUNCTIONS, LANES, REWRITTEN
-from cosserat_casadi.compiling.scalar_program import MINUS_PRODUCT, OF_TWO, PLUS_PRODUCT, PRODUCT_MINUS, scalar_program
+from cosserat_casadi.compiling.scalar_program import (
+    MINUS_PRODUCT,
+    OF_TWO,
+    PLUS_PRODUCT,
+    PRODUCT_MINUS,
+    ScalarProgram,
+    scalar_program,
+)
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.steps_library import steps_library
 from tests.codegen.test_load import needs_compiler
@@ -19,19 +27,23 @@ from tests.moving_scenes import model_of
 
 pytestmark = needs_compiler
 
+Writer = Callable[[ca.Function], ScalarProgram | None]
+"""Writer of a program."""
+
 ROUNDING = 1e-15
 """Functions of the mathematical library may be those of another one."""
 
 
-def run(function: ca.Function, arguments: FloatArray) -> FloatArray:
+def run(function: ca.Function, arguments: FloatArray, write: Writer = scalar_program) -> FloatArray:
     """Results of a function by its program, for the entries of all arguments in each lane, shape (LANES, entries)."""
-    program = scalar_program(function)
+    program = write(function)
     assert program is not None
     slots = np.repeat(program.slots, LANES).reshape(-1, LANES)
     slots[: program.arguments] = arguments.T
+    code = program.in_c
     # Lines on the same slots give the same again: what they leave behind is written over.
     for _ in range(2):
-        steps_library().program_run(_address(program.lines), len(program.lines), _address(slots))
+        steps_library().program_run(_address(code), len(program.lines), _address(slots))
     return slots[program.arguments : program.arguments + function.nnz_out()].T.copy()
 
 

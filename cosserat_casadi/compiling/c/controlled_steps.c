@@ -4,13 +4,9 @@
    cosserat_casadi/numerics holds the same algorithm in Python, which runs where there is no compiler: time_steps.py,
    step_run.py, step_matrices.py, step_control.py; and stage_newton.c is Newton's method. */
 
-/* Loops and sums are put into vectors, and little else, so that the first motion waits for it less. Of all that O3 does
-   the operations of a program alone gain by the rest too. */
+/* Loops and sums are put into vectors, and little else, so that the first motion waits for it less. */
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("O1", "tree-loop-vectorize", "tree-slp-vectorize", "vect-cost-model=dynamic", "unswitch-loops")
-#define FASTEST __attribute__((optimize("O3")))
-#else
-#define FASTEST
 #endif
 #ifdef __clang__
 /* A product and a sum are rounded one after the other, as by CasADi's virtual machine. */
@@ -312,12 +308,41 @@ static void motion_in(real size, real share, const real *values, const real *int
   }
 #endif
 
-FASTEST static void run_lines(const int *program, int lines, real *slots) {
-  for (const int *line = program; line < program + 5 * lines; line += 5) {
-    real *to = slots + LANES * line[1];
-    const real *a = slots + LANES * line[2];
-    const real *b = slots + LANES * line[3];
-    const real *c = slots + LANES * line[4];
+#define SLOT(number) (slots + LANES * (number))
+
+/* A line computes neighbouring slots from as many neighbours of each operand. */
+#define MANY(statement)                                                     \
+  {                                                                         \
+    const real *a = SLOT(line[2]), *b = SLOT(line[3]), *c = SLOT(line[4]);  \
+    for (; to < end; to += LANES, a += LANES, b += LANES, c += LANES) statement;\
+    (void)b, (void)c;                                                       \
+  }
+
+/* Tables behind the lines list slots that are no neighbours: those that are copied, */
+#define GATHER                                                              \
+  {                                                                         \
+    const int *from = tables + line[2];                                     \
+    for (; to < end; to += LANES) STORE(to, LOAD(SLOT(*from++)));           \
+  }
+
+/* or the factors of as many products for each slot as an earlier table counts. */
+#define ADD_PRODUCTS                                                        \
+  {                                                                         \
+    const int *counts = tables + line[2], *pair = tables + line[3];         \
+    for (; to < end; to += LANES) {                                         \
+      FOUR sum = SPREAD(0);                                                 \
+      for (int left = *counts++; left > 0; left--, pair += 2) {             \
+        sum += LOAD(SLOT(pair[0])) * LOAD(SLOT(pair[1]));                   \
+      }                                                                     \
+      STORE(to, sum);                                                       \
+    }                                                                       \
+  }
+
+static void run_lines(const int *program, int lines, real *slots) {
+  const int *tables = program + 6 * lines;
+  for (const int *line = program; line < tables; line += 6) {
+    real *to = SLOT(line[1]);
+    const real *end = to + LANES * line[5];
     switch (line[0]) {
       SCALAR_OPERATIONS
     }
