@@ -14,7 +14,7 @@ import numpy as np
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.broyden import solved
-from cosserat_casadi.numerics.newton import NewtonSettings, length_of, relative_norm
+from cosserat_casadi.numerics.newton import NewtonSettings, relative_norm
 
 HELD_STEPS = 6
 """Most steps with fixed places."""
@@ -27,9 +27,6 @@ MOST_STEPS = 25
 
 SQUEEZED = 0.5
 """Share of its width that an element may lose in a step."""
-
-STILL = 1e-6
-"""Step of the places, over the length of the rod, above which a small residual does not end the steps."""
 
 COLLAPSED = 1e-4
 """Width of an element, over the length of the rod, below which its ends have met."""
@@ -50,24 +47,23 @@ def sought(equations: ContactEquations, start: FloatArray, settings: NewtonSetti
     if z is None:
         return start, False, taken
     best = z
-    least = last = np.inf
+    least = np.inf
     for _ in range(MOST_STEPS):
         residual = equations.residual(z, equations.given)
         norm = relative_norm(residual, z)
         if not np.isfinite(norm):
             break
-        if norm <= max(least, settings.tolerance):
+        if max(least, norm) <= settings.tolerance and norm >= 0.5 * least:
+            # Only rounding is left; forces that change much may enlarge a small residual once.
+            break
+        if least > settings.tolerance or norm < least:
             best = z
             least = norm
+        if _widths(equations, z).min() < COLLAPSED:
+            break
         step = solved(equations.jacobian(z, equations.given), -residual)
-        if step is None or _widths(equations, z).min() < COLLAPSED:
+        if step is None:
             break
-        size = length_of(step)
-        moved = np.abs(step[-len(equations.state.places) :]).max()
-        if norm <= settings.tolerance and moved <= STILL and size >= 0.5 * last:
-            # Only rounding is left, which steps no longer lessen.
-            break
-        last = size
         z = z + _share(equations, z, step) * step
         taken += 1
     return best, bool(least <= settings.tolerance), taken
