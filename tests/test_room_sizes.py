@@ -21,7 +21,7 @@ LINES = {
     "constraints": 1_030,
     "control": 2_795,
     "environments": 330,
-    "equilibrium": 8_290,
+    "equilibrium": 8_320,
     "estimation": 1_730,
     "identification": 4_646,
     "loads": 2_365,

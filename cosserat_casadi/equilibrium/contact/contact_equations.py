@@ -20,7 +20,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.contact_state import SHORTEST, ContactState, contact_loads, with_contacts
-from cosserat_casadi.equilibrium.contact.gap_rows import force_widths, gap_rows
+from cosserat_casadi.equilibrium.contact.gap_rows import force_widths, gap_rows, rows_from_start
 from cosserat_casadi.equilibrium.contact.gaps import obstacle_of
 from cosserat_casadi.equilibrium.contact.shape_projection import projected
 from cosserat_casadi.equilibrium.load_path import column
@@ -260,6 +260,8 @@ class Written:
             else:
                 rows.append(-by_forces[:, force].T / width)
                 force += 1
+        for row, start in rows_from_start(self.system, self.state, self.modes):
+            rows[1 + row] -= rows[1 + start]
         return ca.vertcat(*rows)
 
 

@@ -6,13 +6,16 @@ f_j. A compliance of the surface below rounding makes f_j small there; the mean 
 
     ∫ P_j (d − ρ) + c/w f_j = 0,    j > 0.
 
+On a plane all gaps of a line but the first count from the gap at its start, by the stretch of rod between alone: they
+have the rounding of this stretch, not of the whole rod, which on a width of 5e-4 leaves 1e-5 of the forces open.
+
 See docs/contact.md.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import casadi as ca
@@ -53,16 +56,35 @@ def gap_rows(system: System, state: ContactState, modes: Mapping[str, int], forc
             rows += _rods_gap(system, touch)
             continue
         distances = Distances(system, touch.owner, obstacle_of(system.discrete.scene, touch.obstacle))
+        from_start = replace(distances, since=touch.start) if _counts_from_start(system, touch) else distances
         for end, moves in zip(touch.carriers, touch.carriers_move, strict=True):
-            gap, slope = distances.at(end)
+            gap, slope = (distances if end is touch.start else from_start).at(end)
             rows.append(gap)
             if moves:
                 rows.append(slope)
         if touch.is_line:
             for start, end, own in touch.by_stretch(along, modes[touch.owner]):
                 varying = ca.vertcat(0, own[1:, :])
-                rows.append(distances.moments(start, end, own.shape[0]) + GIVES / (end - start) * varying)
+                rows.append(from_start.moments(start, end, own.shape[0]) + GIVES / (end - start) * varying)
     return ca.vertcat(*rows)
+
+
+def _counts_from_start(system: System, touch: Touch) -> bool:
+    """Whether the gaps of a contact count from the gap at its start; a base that lies on a plane has no such gap."""
+    sought = touch.is_line and not touch.starts_at_base
+    return sought and obstacle_of(system.discrete.scene, touch.obstacle).kind == "plane"
+
+
+def rows_from_start(system: System, state: ContactState, modes: Mapping[str, int]) -> Iterator[tuple[int, int]]:
+    """Each row of a gap that counts from the gap at the start of its line, and the row of this start."""
+    start = 0
+    for touch in state.touches:
+        if _counts_from_start(system, touch):
+            sections = range(2, 3 + len(touch.seams))
+            counts = touch.moment_counts(modes[touch.owner])
+            means = len(touch.carriers) + len(touch.moving) + np.cumsum([0, *counts[:-1]])
+            yield from ((start + row, start) for row in (*sections, *means.tolist()))
+        start += len(force_widths(ContactState((touch,)), modes))
 
 
 def force_widths(state: ContactState, modes: Mapping[str, int]) -> list[Place | None]:
@@ -176,12 +198,21 @@ class Distances(RodSurface):
 
     Attributes:
         obstacle: the obstacle.
+        since: start of a line on a plane, from whose gap the distances count; None for distances from the obstacle.
     """
 
     obstacle: scenes.ObstacleRecord
+    since: Place | None = None
 
     def _gap(self, node: int, X: Place) -> tuple[Matrix, Matrix]:
         """Distance of the surface at a node, m, and the normal of the obstacle there, in the axes it is given in."""
+        if self.since is not None:
+            _, normal, _ = surface(self.obstacle)(ca.DM.zeros(3))
+            integrals = self.discrete.grid.integration_matrix
+            weights = integrals[node] - integrals[self.discrete.grid.node_at(self.since) + 1]
+            between = self._world_R_base @ (self.system.shapes[self.rod].tangent @ ca.sparsify(ca.DM(weights)))
+            rise = ca.dot(normal, self.system.turned_to(self.obstacle.body, between))
+            return rise - self.taper * (X - self.since), normal
         position = self.system.position_at(self.rod, node)
         distance, normal, _ = surface(self.obstacle)(self.system.seen_from(self.obstacle.body, position))
         return distance - self.radius(X), normal
