@@ -20,7 +20,14 @@ from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.tubes.robot import robot_of
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
 from cosserat_casadi.tubes.tube_solution import TubeSolution
-from cosserat_casadi.tubes.tube_solve import FEWEST_STEPS, MOST_STEPS, error_beside, finer_than, model_of, solution_near
+from cosserat_casadi.tubes.tube_solve import (
+    FEWEST_STEPS,
+    MOST_STEPS,
+    error_by_finer,
+    finer_than,
+    model_of,
+    solution_near,
+)
 
 MODES_OF_SHORT = (2, 4)
 """Modes of the first levels for rods with short elements, as each mode multiplies the optimiser's unknowns."""
@@ -132,7 +139,7 @@ class LevelsOfTubes:
 
     def judged(self, solution: TubeSolution, reference: TubeSolution) -> TubeSolution:
         """A solution with the error that its reference gives it, where both are equilibria."""
-        return replace(solution, error_estimate=error_beside(solution, reference))
+        return replace(solution, error_estimate=error_by_finer(solution, reference))
 
 
 def levels_of(scene: scenes.Scene) -> Levels:
@@ -147,4 +154,4 @@ def with_error(solution: Equilibrium[Any]) -> Equilibrium[Any]:
     if isinstance(solution, Solution):
         return estimated(solution) if not solution.model.scene.touches_exactly else estimated_in_contact(solution)
     assert isinstance(solution, TubeSolution)
-    return replace(solution, error_estimate=error_beside(solution, finer_than(solution)))
+    return replace(solution, error_estimate=error_by_finer(solution, finer_than(solution)))

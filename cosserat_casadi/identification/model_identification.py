@@ -41,7 +41,7 @@ from cosserat_casadi.tubes.tube_functions import AnyModel, TubeFunctions
 from cosserat_casadi.tubes.tube_solve import (
     FEWEST_STEPS,
     TubeModels,
-    error_beside,
+    error_by_finer,
     finer_than,
     solution_at,
     solve_inputs,
@@ -273,7 +273,7 @@ def _error(model: AnyModel, inputs: FloatArray, x: FloatArray) -> float:
     """Estimate the error of an equilibrium for comparison with the tolerance; for tubes by twice the steps."""
     if isinstance(model, TubeFunctions):
         solution = solution_at(model, inputs, x, found=True)
-        beside = error_beside(solution, finer_than(solution))
+        beside = error_by_finer(solution, finer_than(solution))
         return UNKNOWN if beside is None else beside
     equilibrium = Solution(model, inputs, x, Outcome.CONVERGED, "", 0.0, 0)
     error = answer_error(equilibrium)

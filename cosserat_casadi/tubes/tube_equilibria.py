@@ -33,6 +33,7 @@ from cosserat_casadi.tubes.tube_solution import TubeSolution
 from cosserat_casadi.tubes.tube_solve import (
     MOST_STEPS,
     error_beside,
+    error_by_finer,
     finer_than,
     judged,
     loaded_from,
@@ -177,7 +178,7 @@ def tubes_at_rest(
         found = solve_at(subject, inputs)
     if not estimate_error:
         return found
-    return replace(found, error_estimate=error_beside(found, finer_than(found)))
+    return replace(found, error_estimate=error_by_finer(found, finer_than(found)))
 
 
 def stable_tubes(scene: scenes.Scene, values: Values = None) -> TubeSolution:
