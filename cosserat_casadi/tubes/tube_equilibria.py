@@ -20,6 +20,7 @@ from typing import TypeVar
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.metrics import SAFETY
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.events import bracketed_zero
@@ -33,7 +34,6 @@ from cosserat_casadi.tubes.tube_solution import TubeSolution
 from cosserat_casadi.tubes.tube_solve import (
     MOST_STEPS,
     error_beside,
-    error_by_finer,
     finer_than,
     judged,
     loaded_from,
@@ -178,7 +178,7 @@ def tubes_at_rest(
         found = solve_at(subject, inputs)
     if not estimate_error:
         return found
-    return replace(found, error_estimate=error_by_finer(found, finer_than(found)))
+    return replace(found, error_estimate=error_beside(found, finer_than(found), SAFETY))
 
 
 def stable_tubes(scene: scenes.Scene, values: Values = None) -> TubeSolution:

@@ -10,7 +10,6 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.load_path import column, input_path
-from cosserat_casadi.equilibrium.metrics import ROUNDING, SAFETY
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arclength import ArcSettings, Curve
 from cosserat_casadi.numerics.continuation import ContinuationResult, Path, PathPoint, follow
@@ -125,15 +124,9 @@ def doubled(
         coarse = fine
 
 
-def error_beside(solution: TubeSolution, finer: TubeSolution) -> float | None:
-    """Error of the tips of a solution against a finer one; None if either is no equilibrium."""
-    return tip_error(solution, finer) if solution.converged and finer.converged else None
-
-
-def error_by_finer(solution: TubeSolution, finer: TubeSolution) -> float | None:
-    """Error estimate of a solution by a finer one, which errs too; None if either is no equilibrium."""
-    distance = error_beside(solution, finer)
-    return None if distance is None else SAFETY * distance + ROUNDING
+def error_beside(solution: TubeSolution, finer: TubeSolution, factor: float = 1.0) -> float | None:
+    """Error of the tips of a solution against a finer one, by a factor; None if either is no equilibrium."""
+    return factor * tip_error(solution, finer) if solution.converged and finer.converged else None
 
 
 def judged(solution: TubeSolution, error: float | None) -> TubeSolution:
