@@ -13,7 +13,7 @@ from cosserat_casadi.accuracy.refine import FINER_MODES, solve
 from cosserat_casadi.equilibrium.answer_error import estimated
 from cosserat_casadi.equilibrium.contact.contact_answer_error import beside_finer, estimated_in_contact
 from cosserat_casadi.equilibrium.contact.contact_state import given_inputs
-from cosserat_casadi.equilibrium.metrics import largest_turn, prolong, with_estimate
+from cosserat_casadi.equilibrium.metrics import SAFETY, largest_turn, prolong, with_estimate
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.system_functions import SystemFunctions
@@ -132,7 +132,7 @@ class LevelsOfTubes:
 
     def judged(self, solution: TubeSolution, reference: TubeSolution) -> TubeSolution:
         """A solution with the error that its reference gives it, where both are equilibria."""
-        return replace(solution, error_estimate=error_beside(solution, reference))
+        return replace(solution, error_estimate=error_beside(solution, reference, SAFETY))
 
 
 def levels_of(scene: scenes.Scene) -> Levels:
@@ -147,4 +147,4 @@ def with_error(solution: Equilibrium[Any]) -> Equilibrium[Any]:
     if isinstance(solution, Solution):
         return estimated(solution) if not solution.model.scene.touches_exactly else estimated_in_contact(solution)
     assert isinstance(solution, TubeSolution)
-    return replace(solution, error_estimate=error_beside(solution, finer_than(solution)))
+    return replace(solution, error_estimate=error_beside(solution, finer_than(solution), SAFETY))

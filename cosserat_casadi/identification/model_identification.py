@@ -16,6 +16,7 @@ from cosserat_casadi.accuracy.fixing import fixed_alike, unfixed, union_of, with
 from cosserat_casadi.accuracy.models import build
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN, answer_error
 from cosserat_casadi.equilibrium.contact.contact_answer_error import estimated_in_contact
+from cosserat_casadi.equilibrium.metrics import SAFETY
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.identification.case_motions import StartInputs, check_motions
@@ -273,7 +274,7 @@ def _error(model: AnyModel, inputs: FloatArray, x: FloatArray) -> float:
     """Estimate the error of an equilibrium for comparison with the tolerance; for tubes by twice the steps."""
     if isinstance(model, TubeFunctions):
         solution = solution_at(model, inputs, x, found=True)
-        beside = error_beside(solution, finer_than(solution))
+        beside = error_beside(solution, finer_than(solution), SAFETY)
         return UNKNOWN if beside is None else beside
     equilibrium = Solution(model, inputs, x, Outcome.CONVERGED, "", 0.0, 0)
     error = answer_error(equilibrium)

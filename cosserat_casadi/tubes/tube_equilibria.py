@@ -20,6 +20,7 @@ from typing import TypeVar
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.metrics import SAFETY
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.events import bracketed_zero
@@ -177,7 +178,7 @@ def tubes_at_rest(
         found = solve_at(subject, inputs)
     if not estimate_error:
         return found
-    return replace(found, error_estimate=error_beside(found, finer_than(found)))
+    return replace(found, error_estimate=error_beside(found, finer_than(found), SAFETY))
 
 
 def stable_tubes(scene: scenes.Scene, values: Values = None) -> TubeSolution:

@@ -124,9 +124,9 @@ def doubled(
         coarse = fine
 
 
-def error_beside(solution: TubeSolution, finer: TubeSolution) -> float | None:
-    """Error of the tips of a solution against a finer one; None if either is no equilibrium."""
-    return tip_error(solution, finer) if solution.converged and finer.converged else None
+def error_beside(solution: TubeSolution, finer: TubeSolution, factor: float = 1.0) -> float | None:
+    """Error of the tips of a solution against a finer one, by a factor; None if either is no equilibrium."""
+    return factor * tip_error(solution, finer) if solution.converged and finer.converged else None
 
 
 def judged(solution: TubeSolution, error: float | None) -> TubeSolution:
