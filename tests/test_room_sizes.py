@@ -36,7 +36,7 @@ LINES = {
     "plots": 3_920,
     "results": 2_075,
     "rod": 6_128,
-    "scene": 9_800,
+    "scene": 9_820,
     "sweeps": 3_708,
     "tubes": 3_250,
     "view": 1_095,

@@ -34,6 +34,7 @@ from cosserat_casadi.scene.faults import (
 from cosserat_casadi.scene.input_range_records import ranges_of_no_input
 from cosserat_casadi.scene.input_rules import bounds_of_no_input, free_names, inputs_that_are_not, requested_fields
 from cosserat_casadi.scene.load_records import LOADS
+from cosserat_casadi.scene.material_records import MATERIALS
 from cosserat_casadi.scene.measurement_record import MEASUREMENTS, overlap
 from cosserat_casadi.scene.motion_records import InputMotion
 from cosserat_casadi.scene.motion_rules import motions_of_no_input
@@ -265,12 +266,29 @@ def sections_of_no_layer(scene: SceneTables) -> Iterator[Fault]:
         # A faulty obstacle has its own faults.
         if obstacle is None or (obstacle.is_smooth and obstacle.presses_rods):
             return
+    problem = "no obstacle with a width presses a rod: nothing is summed at sections"
+    yield from _counts_of_no_sum(scene, "sections", problem, "give an obstacle a width, m")
+
+
+def fibres_of_no_law(scene: SceneTables) -> Iterator[Fault]:
+    """Faults of fibres in a scene whose materials have no law that is summed over them."""
+    if scene.tables("tubes"):
+        return
+    for _, rod in scene.tables("rods"):
+        material = MATERIALS.record_of(table_of(rod.get("material")))
+        # An unknown law has its own fault.
+        if material is None or material.fibres:
+            return
+    yield from _counts_of_no_sum(scene, "fibres", "no law of a material is summed over fibres", "give a rod of rubber")
+
+
+def _counts_of_no_sum(scene: SceneTables, key: str, problem: str, remedy: str) -> Iterator[Fault]:
+    """A fault for each place where ``accuracy`` counts the terms of a sum that no rod of the scene has."""
     accuracy = table_of(scene.get("accuracy"))
     tables = {(): accuracy} | {("of_rods", i): table_of(own) for i, own in enumerate(list_of(accuracy.get("of_rods")))}
     for path, table in tables.items():
-        if "sections" in table:
-            problem = "no obstacle with a width presses a rod: nothing is summed at sections"
-            yield Fault(("accuracy", *path, "sections"), problem, "leave it out, or give an obstacle a width, m")
+        if key in table:
+            yield Fault(("accuracy", *path, key), problem, f"leave it out, or {remedy}")
 
 
 def parameters_that_are_not(scene: SceneTables) -> Iterator[Fault]:
@@ -365,6 +383,7 @@ RULES: tuple[Rule, ...] = (
     miscounted_modes,
     discretised_rods_that_are_not,
     sections_of_no_layer,
+    fibres_of_no_law,
     tube_faults,
     inputs_that_are_not,
     parameters_that_are_not,

@@ -107,6 +107,7 @@ BAD = [
     ("of_rods_count", scene(of_rods("finger", [2, 2])), "accuracy.of_rods[0].modes", "got 2 where the rod admits 3"),
     ("of_rods_alone", scene(of_rods("finger", 2, "")), "accuracy.of_rods", "stands without modes, nodes and rotation"),
     ("sections_without_layers", scene(SUMMED), "accuracy.sections", "nothing is summed at sections"),
+    ("fibres_of_no_rubber", scene(SUMMED.replace("sections", "fibres")), "accuracy.fibres", "summed over fibres"),
     ("sections_exact", scene(SUMMED + BAR), "accuracy.sections", "no obstacle with a width presses a rod"),
     (
         "sections_of_rod",
