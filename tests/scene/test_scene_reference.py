@@ -202,7 +202,7 @@ def in_a_heading(record: type[Record], key: str) -> bool:
 def test_every_number_has_a_unit_or_has_none_by_nature() -> None:
     without = [row[0] for row in lines() if row[2] == "–" and re.search("number|component", row[1])]
     in_another_unit = {"`amplitude`", "`lower`", "`mean`", "`shift`", "`sigma`", "`upper`", "`values`"}
-    counts = {"`count`", "`frames`", "`modes`", "`nodes`", "`sections`", "`starts`"}
+    counts = {"`count`", "`fibres`", "`frames`", "`modes`", "`nodes`", "`sections`", "`starts`"}
     # The coefficient of a term has the unit of energy per length over its powers, which are counts.
     powers = {f"`{name}`" for name in STRAINS}
     # A pair of Ogden's has a modulus and an exponent.
