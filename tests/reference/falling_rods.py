@@ -269,7 +269,11 @@ class FallingRod:
             return [Contact(s, c.rolls, c.slides) for s, c in zip(y[2 * n :], contacts, strict=True)]
 
         def rates(_: float, y: FloatArray) -> FloatArray:
-            own, found, _ = at(y)
+            try:
+                own, found, _ = at(y)
+            except np.linalg.LinAlgError:
+                # A step was tried too far, and the integrator tries a shorter one.
+                return np.full(y.size, np.nan)
             return np.concatenate([y[n : 2 * n], found, [section.rolling for section in own]])
 
         def guards(y: FloatArray) -> FloatArray:
