@@ -169,8 +169,10 @@ def _regular_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray | No
     step = _well_conditioned_step(jacobian, residual, np.ones(len(residual)))
     if step is not None:
         return step
-    # Tension makes some rows of a taut rod large. A neutral direction stays singular without their size.
-    units = np.sqrt(np.maximum(1.0, np.abs(jacobian).max(axis=1)))
+    # Tension makes some rows of a taut rod large, and the columns of the same unknowns: forces of contacts, only one of
+    # them. A neutral direction stays singular without their size.
+    sizes = np.abs(jacobian)
+    units = np.sqrt(np.maximum(1.0, np.minimum(sizes.max(axis=0), sizes.max(axis=1))))
     return _well_conditioned_step(jacobian, residual, units) if units.max() > 1.0 else None
 
 
