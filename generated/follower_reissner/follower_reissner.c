@@ -34,7 +34,7 @@ static const real STEP_WEIGHTS[N] = {
 /* Which unknowns are strains or poses of frames, not multipliers or tensions. */
 static const int IS_SHAPE[N] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
 
-/* Whether a load path that stalls nearly loaded is then paced. */
+/* Whether load paths that stall nearly loaded are paced. */
 enum { PACES = 0, PACE = 3 };
 static const real NEARLY_LOADED = (real)0.99;
 

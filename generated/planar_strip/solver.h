@@ -109,7 +109,7 @@ typedef struct {
 /* From the unloaded scene under growing loads, or from some inputs to others; t from 0 to 1. */
 typedef struct {
   int grows_load;
-  int is_paced; /* the shape alone bounds steps */
+  int is_paced; /* by the shape alone */
   const real *from;
   const real *to;
 } load_path;

@@ -219,7 +219,6 @@ static updated_jacobian *follow_to_the_end(const load_path *path, int has_jacobi
   return 0;
 }
 
-/* Returns Newton's last Jacobian at the solution, or null. */
 static updated_jacobian *grow_loads(const real *inputs, int is_paced, real *x, workspace *work, solver_info *info) {
   const load_path path = {.grows_load = 1, .is_paced = is_paced, .from = inputs, .to = inputs};
   path_point *first = work->points;
@@ -234,7 +233,7 @@ static updated_jacobian *grow_loads(const real *inputs, int is_paced, real *x, w
   return follow_to_the_end(&path, 0, x, work, info);
 }
 
-/* Tension may keep the steps from the full load: then the shape alone bounds them. Returns Newton's last Jacobian at the
+/* Tension may keep the steps from the full load: then the shape bounds them. Returns Newton's last Jacobian at the
    solution, or null. */
 static updated_jacobian *solve_from_unloaded(const real *inputs, real *x, workspace *work, solver_info *info) {
   updated_jacobian *jacobian = grow_loads(inputs, 0, x, work, info);
