@@ -17,7 +17,7 @@ LINES = {
     "beside rooms": 625,
     "cli": 4_410,
     "codegen": 11_880,
-    "compiling": 5_451,
+    "compiling": 5_450,
     "constraints": 1_030,
     "control": 2_795,
     "environments": 330,

@@ -13,7 +13,7 @@ import numpy as np
 
 from cosserat_casadi.compiling.numbered import Numbers, Value
 from cosserat_casadi.compiling.scalar_program import GATHERED, SUMS_OF_PRODUCTS, ScalarProgram, scalar_program
-from cosserat_casadi.compiling.steps import UnknownInstructionError, instruction_in_scalars, moved
+from cosserat_casadi.compiling.steps import UnknownInstructionError, instruction_in_scalars, results_of
 from cosserat_casadi.maths.typing import FloatArray
 
 
@@ -76,27 +76,7 @@ class _Writer:
 
     def results_of(self, function: ca.Function, arguments: Sequence[Value]) -> list[Value]:
         """Write the lines of a function of matrices with these arguments; return its results."""
-        outputs = [np.zeros(function.nnz_out(i), dtype=np.int64) for i in range(function.n_out())]
-        values = dict[int, Value]()
-        for k in range(function.n_instructions()):
-            code = function.instruction_id(k)
-            node = function.instruction_MX(k)
-            operands = [values[variable] for variable in function.instruction_input(k)] if code != ca.OP_INPUT else []
-            if code == ca.OP_OUTPUT:
-                info = node.info()
-                numbers = operands[0].numbers
-                outputs[info["ind"]][info["offset"] : info["offset"] + len(numbers)] = numbers
-                continue
-            if code == ca.OP_INPUT:
-                info = node.info()
-                numbers = arguments[info["ind"]].numbers
-                results = [Value(node.sparsity(), numbers[info["offset"] : info["offset"] + node.nnz()])]
-            elif code == ca.OP_CONST:
-                results = [self._constant(node.to_DM())]
-            else:
-                results = moved(code, node, operands) or self._computed(code, node, operands)
-            values.update(zip(function.instruction_output(k), results, strict=True))
-        return [Value(function.sparsity_out(i), numbers) for i, numbers in enumerate(outputs)]
+        return results_of(function, arguments, self._constant, self._computed)
 
     def _computed(self, code: int, node: ca.MX, operands: Sequence[Value]) -> list[Value]:
         """Write the lines of an instruction that computes; return its results."""

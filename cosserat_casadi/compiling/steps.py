@@ -65,6 +65,44 @@ def program_of(function: ca.Function) -> Program:
     return _Reading(function).program
 
 
+def results_of(
+    function: ca.Function,
+    arguments: Sequence[Value],
+    constant: Callable[[ca.DM], Value],
+    computed: Callable[[int, ca.MX, Sequence[Value]], list[Value]],
+) -> list[Value]:
+    """Read the instructions of a function of matrices, and return its results.
+
+    Args:
+        function: the function.
+        arguments: a matrix for each of its arguments.
+        constant: reader of a constant matrix.
+        computed: reader of an instruction that does more than move entries, from its code, node and operands.
+    """
+    outputs = [np.zeros(function.nnz_out(i), dtype=np.int64) for i in range(function.n_out())]
+    values = dict[int, Value]()
+    for k in range(function.n_instructions()):
+        code = function.instruction_id(k)
+        node = function.instruction_MX(k)
+        read = function.instruction_input(k)
+        if code == ca.OP_OUTPUT:
+            info = node.info()
+            numbers = values[read[0]].numbers
+            outputs[info["ind"]][info["offset"] : info["offset"] + len(numbers)] = numbers
+            continue
+        if code == ca.OP_INPUT:
+            info = node.info()
+            numbers = arguments[info["ind"]].numbers
+            results = [Value(node.sparsity(), numbers[info["offset"] : info["offset"] + node.nnz()])]
+        elif code == ca.OP_CONST:
+            results = [constant(node.to_DM())]
+        else:
+            operands = [values[variable] for variable in read]
+            results = _moved(code, node, operands) or computed(code, node, operands)
+        values.update(zip(function.instruction_output(k), results, strict=True))
+    return [Value(function.sparsity_out(i), numbers) for i, numbers in enumerate(outputs)]
+
+
 class _Reading:
     """Reader of a function, which makes a program of it."""
 
@@ -106,29 +144,7 @@ class _Reading:
 
     def _read(self, function: ca.Function, arguments: Sequence[Value]) -> list[Value]:
         """Read the instructions of a function of matrices with these arguments; return its results."""
-        outputs = [np.zeros(function.nnz_out(i), dtype=np.int64) for i in range(function.n_out())]
-        values = dict[int, Value]()
-        for k in range(function.n_instructions()):
-            code = function.instruction_id(k)
-            node = function.instruction_MX(k)
-            given = function.instruction_input(k)
-            if code == ca.OP_OUTPUT:
-                info = node.info()
-                numbers = values[given[0]].numbers
-                outputs[info["ind"]][info["offset"] : info["offset"] + len(numbers)] = numbers
-                continue
-            if code == ca.OP_INPUT:
-                info = node.info()
-                numbers = arguments[info["ind"]].numbers
-                results = [Value(node.sparsity(), numbers[info["offset"] : info["offset"] + node.nnz()])]
-            elif code == ca.OP_CONST:
-                results = [self._constant(node.to_DM())]
-            else:
-                operands = [values[variable] for variable in given]
-                results = moved(code, node, operands) or self._computed(code, node, operands)
-            for variable, result in zip(function.instruction_output(k), results, strict=True):
-                values[variable] = result
-        return [Value(function.sparsity_out(i), numbers) for i, numbers in enumerate(outputs)]
+        return results_of(function, arguments, self._constant, self._computed)
 
     def _computed(self, code: int, node: ca.MX, operands: Sequence[Value]) -> list[Value]:
         """Make the step of an instruction that computes; return its results."""
@@ -403,7 +419,7 @@ def _entrywise(code: int, sizes: tuple[int, ...]) -> ca.Function:
     return ca.Function("operation", symbols, [result])
 
 
-def moved(code: int, node: ca.MX, operands: Sequence[Value]) -> list[Value]:
+def _moved(code: int, node: ca.MX, operands: Sequence[Value]) -> list[Value]:
     """Return the results of an instruction that only moves entries; empty for one that computes."""
     first = operands[0]
     numbers = first.numbers
