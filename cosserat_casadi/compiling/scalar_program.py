@@ -101,7 +101,7 @@ class _Writer:
         """Write the lines of a function whose slots begin at ``begin``; None if an instruction is not supported."""
         every = range(function.n_instructions())
         codes = np.fromiter(map(function.instruction_id, every), np.intc, len(every))
-        if not KNOWN.issuperset(np.unique(codes).tolist()):
+        if not KNOWN.issuperset(codes.tolist()):
             return None
         operand, other = _first_and_last(map(function.instruction_input, every), len(every))
         result, entry = _first_and_last(map(function.instruction_output, every), len(every))

@@ -109,7 +109,7 @@ def admissible_spectrum(jacobian: FloatArray, allowed: ConstrainedVariations) ->
     """
     block = np.ix_(allowed.free, allowed.free)
     yielding = _yielding(jacobian, allowed)
-    held = np.setdiff1d(allowed.held, yielding)
+    held = np.setdiff1d(allowed.held, yielding, assume_unique=True)
     # Slack or elastic cables and elastic stops follow the variations: they are eliminated.
     pull = jacobian[np.ix_(allowed.free, yielding)] / np.diagonal(jacobian)[yielding]
     hessian = jacobian[block] - pull @ jacobian[np.ix_(yielding, allowed.free)]

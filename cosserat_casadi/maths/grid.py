@@ -250,7 +250,7 @@ class Grid:
         elements = self.element_of(abscissae)
         spans = list(pairwise(self.known_places))
         # All rows of an element at once, since this is most of the work for many sections.
-        for element in np.unique(elements).tolist():
+        for element in set(elements.tolist()):
             rows = np.flatnonzero(elements == element)
             start, end = spans[element]
             local = (abscissae[rows] - start) / (end - start)

@@ -44,7 +44,7 @@ def unloaded_response(
     origin[geometry] = discrete.layout.pack()[geometry]
     jacobian = path_jacobian(unloaded, origin, 0.0)
     # The rate at zero inputs, and with one input at a time set to one.
-    linear = np.setdiff1d(np.arange(size), geometry)
+    linear = np.setdiff1d(np.arange(size), geometry, assume_unique=True)
     probes = np.hstack([np.zeros((size, 1)), np.eye(size)[:, linear]])
     at_probes = path_rate.map(len(linear) + 1)(unloaded, origin[:, None] + probes, 0.0, no_rate, 1.0).full()
     rates = np.repeat(at_probes[:, :1], size + 1, axis=1)

@@ -339,7 +339,7 @@ class History:
         numbers = np.minimum(np.searchsorted(self.end_times, times), len(self.end_times) - 1)
         legs, firsts = self._stepping
         of_legs = np.searchsorted(firsts, numbers, side="right") - 1
-        for of_leg in np.unique(of_legs).tolist():
+        for of_leg in sorted(set(of_legs.tolist())):
             rows = of_legs == of_leg
             yield legs[of_leg], rows, HeldTimes(self.rows[of_leg], numbers[rows] - firsts[of_leg], times[rows])
 
