@@ -475,8 +475,11 @@ def test_an_interrupt_while_casadi_converts_a_matrix_is_raised_at_the_next_repor
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     convert = np.ascontiguousarray
+    signals = 0
 
     def interrupted(values: FloatArray) -> FloatArray:
+        nonlocal signals
+        signals += 1
         signal.raise_signal(signal.SIGINT)
         return convert(values)
 
@@ -486,6 +489,8 @@ def test_an_interrupt_while_casadi_converts_a_matrix_is_raised_at_the_next_repor
         with remembered_interrupt() as raise_interrupt:
             matrix = ca.DM([[1.0, 2.0], [3.0, 4.0]]).full()
             np.testing.assert_array_equal(matrix, [[1.0, 2.0], [3.0, 4.0]])
+            if not signals:
+                pytest.skip("CasADi 3.7 converts matrices without NumPy's function")
             with pytest.raises(KeyboardInterrupt):
                 raise_interrupt()
             with pytest.raises(KeyboardInterrupt):
