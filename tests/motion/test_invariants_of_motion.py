@@ -198,8 +198,8 @@ def test_impulse_of_loads_is_what_momentum_gains() -> None:
 
 
 @pytest.mark.parametrize("free", [True, False])
-def test_what_flies_free_keeps_no_speed_of_short_steps(monkeypatch: pytest.MonkeyPatch, free: bool) -> None:
-    """Where more steps count as short Newton's method takes more iterations for them; what is held drifts nowhere."""
+def test_rods_keep_no_speed_of_short_steps(monkeypatch: pytest.MonkeyPatch, free: bool) -> None:
+    """Where more steps count as short Newton's method takes more iterations for them."""
     rod = undamped(base=FREE) if free else undamped()
     scene = moving_scenes.scene(rod, loads=[moving_scenes.PUSH])
     iterations = []
@@ -207,7 +207,7 @@ def test_what_flies_free_keeps_no_speed_of_short_steps(monkeypatch: pytest.Monke
         monkeypatch.setattr(history, "DRIFTING", share)
         motion = simulated(scene, start="unloaded", duration=0.02, tolerance=1e-3)
         iterations.append(motion.statistics.iterations)
-    assert (iterations[1] > iterations[0]) == free
+    assert iterations[1] > iterations[0]
 
 
 def test_free_fall_is_a_parabola_without_strain() -> None:
