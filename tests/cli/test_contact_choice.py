@@ -161,6 +161,13 @@ def test_cases_without_an_equilibrium_are_not_within_the_tolerance(choice: Choic
     assert "No equilibrium was found at 1 load case," in said
 
 
+def test_the_one_case_of_a_scene_without_inputs_has_no_name(choice: Choice) -> None:
+    assert "Worst case: push.force = [" in printed(choice)
+    said = printed(replace(choice, worst={}))
+    assert "Estimated error" in said
+    assert "Worst case" not in said
+
+
 def test_an_error_that_is_not_known_is_no_number(choice: Choice) -> None:
     unknown = replace(choice, error_estimate=UNKNOWN, met=False)
     assert "estimated error not known" in printed(unknown)

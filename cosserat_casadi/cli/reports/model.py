@@ -161,7 +161,9 @@ def print_choice(console: Console, choice: Choice) -> None:
         console.print(f"[bold yellow]No equilibrium was found at {counted(failed, 'load case')}[/], such as {point}")
     if choice.error_estimate is not None:
         error = error_words(choice.error_estimate, None, tolerance)
-        console.print(f"Worst case: {escape(_point(choice.worst))}: estimated error {error}")
+        # A scene without inputs has one case, which needs no name.
+        case = f"Worst case: {_point(choice.worst)}: estimated" if choice.worst else "Estimated"
+        console.print(f"{escape(case)} error {error}")
 
 
 def print_missed(console: Console, *, fixed: bool) -> None:
