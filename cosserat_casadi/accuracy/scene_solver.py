@@ -18,7 +18,7 @@ from cosserat_casadi.equilibrium.load_path import NEARLY_LOADED
 from cosserat_casadi.equilibrium.metrics import prolong
 from cosserat_casadi.equilibrium.relax import can_relax
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.equilibrium.solve import TAUT_PATH, solve, stabilised
+from cosserat_casadi.equilibrium.solve import solve, stabilised
 from cosserat_casadi.equilibrium.taut_rods import held_taut
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
@@ -127,7 +127,7 @@ class SceneSolver:
         method = "taut" if self.large_tension else "continuation"
         solution = solve(model, self.values, method=method, progress=self.progress, estimate_error=False)
         self._counted(solution)
-        self.large_tension = TAUT_PATH in solution.message
+        self.large_tension = solution.paced
         self.relaxed = False
         if solution.outcome is Outcome.LOAD_STALLED:
             self.taut = held_taut(model, solution.inputs)

@@ -199,6 +199,7 @@ class Solution(Equilibrium[Model]):
         wrench_error_estimate: estimated relative error of the wrenches of bases, supports and joints, and of unknown
             tensions; None if not estimated.
         contacts: contacts with obstacles, in order along each rod. Forces of exact contacts are inputs of the model.
+        paced: whether tension grew large on the load path, so that the shape alone bounded its steps.
     """
 
     smallest_eigenvalue: float | None = None
@@ -206,6 +207,7 @@ class Solution(Equilibrium[Model]):
     shape_error_estimate: float | None = None
     wrench_error_estimate: float | None = None
     contacts: tuple[Contact, ...] = ()
+    paced: bool = False
 
     @cached_property
     def layer_error_estimate(self) -> float | None:

@@ -226,7 +226,7 @@ def solve(
     if stalled and start is None:
         solution = _settled_on_obstacles(solution, limits, progress)
     if end.paced:
-        solution = replace(solution, message=solution.message + TAUT_PATH)
+        solution = replace(solution, message=solution.message + TAUT_PATH, paced=True)
     if stable and not solution.stable:
         solution = stabilised(solution, limits, progress)
     if estimate_error:
