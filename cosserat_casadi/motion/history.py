@@ -50,8 +50,7 @@ DIFFERENTIATED = 0.01
 DRIFTING = 1e-2
 """Step, over the piece of the inputs, below which steps are solved more exactly, the shorter they are.
 
-A kicked rod drifted about its axis by ten tolerances of a step, at a speed that errors of the first steps had caused; a
-clamped rod, let go suddenly, by three times the estimated error.
+Errors of first steps are speeds: a kicked rod drifted by ten tolerances of a step, one let go by five told errors.
 """
 
 LASTING = 1e-3
@@ -662,14 +661,13 @@ class _GrowingMotion:
         return self.flight.keeper is not None and equations.size == self.model.size
 
     def _settings(self, equations: MotionEquations, piece: Piece) -> StepSettings:
-        """Settings of the steps for the equations of a leg."""
+        """Settings of the steps for the equations of a leg; rounding of constraints would be too much for short steps."""
         settings = self.settings
         forces = equations.size - len(settings.tolerance)
         if forces:
             # Contact forces are further unknowns, which have no tolerance.
             tolerance = np.concatenate([settings.tolerance, np.ones(forces)])
             settings = replace(settings, tolerance=tolerance, lasting=LASTING * self.acting)
-        # Rounding of constraints is more than Newton's method is allowed to leave in the shortest steps.
         drifts = bool(np.all(equations.differential)) or self._keeps_momentum(equations)
         if drifts and settings.size is None and not self.model.scene.touches_exactly:
             settings = replace(settings, drifting=DRIFTING * (piece.end - piece.start))
