@@ -661,7 +661,7 @@ class _GrowingMotion:
         return self.flight.keeper is not None and equations.size == self.model.size
 
     def _settings(self, equations: MotionEquations, piece: Piece) -> StepSettings:
-        """Settings of the steps for the equations of a leg; rounding of constraints would be too much for short steps."""
+        """Settings of the steps of a leg. Constraints are rounded: their short steps are solved no more exactly."""
         settings = self.settings
         forces = equations.size - len(settings.tolerance)
         if forces:
