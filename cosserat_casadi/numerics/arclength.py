@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.broyden import dense, shortest_step
+from cosserat_casadi.numerics.broyden import dense, newton_step, regular_step
 from cosserat_casadi.numerics.continuation import Path
 from cosserat_casadi.numerics.neutral import kept_by
 from cosserat_casadi.numerics.newton import relative_norm
@@ -189,7 +189,7 @@ class Curve:
             bordered = np.vstack([self.derivative(y), normal])
             if self.rows is not None:
                 off_curve = self.rows * off_curve
-            step = shortest_step(bordered, np.append(off_curve, off_plane), self.singular)
+            step = newton_step(bordered, np.append(off_curve, off_plane), singular=self.singular)
             if step is None:
                 return None
             y = y + step
@@ -272,8 +272,12 @@ def tangent_along(derivative: FloatArray, direction: FloatArray, singular: float
     """
     if not np.all(np.isfinite(derivative)):
         return None
-    basis = kept_by(derivative, singular)
-    projected = basis @ (basis.T @ direction)
+    # A space of one dimension needs no singular values.
+    along = np.append(np.zeros(len(derivative)), -1.0)
+    projected = regular_step(np.vstack([derivative, direction]), along, singular)
+    if projected is None:
+        basis = kept_by(derivative, singular)
+        projected = basis @ (basis.T @ direction)
     length = float(np.linalg.norm(projected))
     if not length > 0.0:
         return None

@@ -104,7 +104,9 @@ class UpdatedJacobian:
         return sparse_factors(self.jacobian) if isinstance(self.jacobian, ca.DM) else None
 
 
-def newton_step(jacobian: Jacobian, residual: FloatArray, factors: SparseFactors | None = None) -> FloatArray | None:
+def newton_step(
+    jacobian: Jacobian, residual: FloatArray, factors: SparseFactors | None = None, singular: float = SINGULAR
+) -> FloatArray | None:
     """Solve for the Newton step, or for the shortest one if the Jacobian is singular up to rounding.
 
     A rod that may rotate without energy by symmetry has a singular Jacobian; nothing moves along that direction.
@@ -113,6 +115,7 @@ def newton_step(jacobian: Jacobian, residual: FloatArray, factors: SparseFactors
         jacobian: n×n, dense or sparse.
         residual: shape (n,).
         factors: factorisation of a sparse Jacobian by :func:`sparse_factors`, if it serves several steps.
+        singular: reciprocal condition number below which a dense Jacobian counts as singular.
 
     Returns:
         the step, shape (n,); None if it is not finite.
@@ -127,8 +130,8 @@ def newton_step(jacobian: Jacobian, residual: FloatArray, factors: SparseFactors
         jacobian = dense(jacobian)
     if not np.all(np.isfinite(jacobian)) or not np.all(np.isfinite(residual)):
         return None
-    step = _regular_step(jacobian, residual)
-    return shortest_step(jacobian, residual) if step is None else _finite_or_none(step)
+    step = regular_step(jacobian, residual, singular)
+    return _shortest_step(jacobian, residual, singular) if step is None else _finite_or_none(step)
 
 
 def solved(matrix: FloatArray, right: FloatArray) -> FloatArray | None:
@@ -140,19 +143,8 @@ def solved(matrix: FloatArray, right: FloatArray) -> FloatArray | None:
     return _finite_or_none(np.asarray(solution, dtype=np.float64))
 
 
-def shortest_step(jacobian: FloatArray, residual: FloatArray, singular: float = SINGULAR) -> FloatArray | None:
-    """Compute the least-squares step of least norm, which does not move along neutral directions.
-
-    Args:
-        jacobian: shape (n, m).
-        residual: shape (n,).
-        singular: share of the largest singular value below which one counts as zero.
-
-    Returns:
-        the step, shape (m,); None if a number is not finite.
-    """
-    if not np.all(np.isfinite(jacobian)):
-        return None
+def _shortest_step(jacobian: FloatArray, residual: FloatArray, singular: float) -> FloatArray | None:
+    """Compute the least-squares step of least norm, which does not move along neutral directions."""
     solution, _, _, _ = np.linalg.lstsq(jacobian, -residual, rcond=singular)
     return _finite_or_none(np.asarray(solution, dtype=np.float64))
 
@@ -164,19 +156,27 @@ def dense(jacobian: Jacobian) -> FloatArray:
     return np.asarray(jacobian, dtype=np.float64)
 
 
-def _regular_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray | None:
-    """Solve with a regular Jacobian; None if it is singular up to rounding."""
-    step = _well_conditioned_step(jacobian, residual, np.ones(len(residual)))
+def regular_step(jacobian: FloatArray, residual: FloatArray, singular: float = SINGULAR) -> FloatArray | None:
+    """Compute the Newton step with a finite regular Jacobian; None if the Jacobian is singular up to rounding.
+
+    Args:
+        jacobian: shape (n, n).
+        residual: shape (n,).
+        singular: reciprocal condition number below which the Jacobian counts as singular.
+    """
+    step = _well_conditioned_step(jacobian, residual, np.ones(len(residual)), singular)
     if step is not None:
         return step
     # Tension makes some rows of a taut rod large, and the columns of the same unknowns: forces of contacts, only one of
     # them. A neutral direction stays singular without their size.
     sizes = np.abs(jacobian)
     units = np.sqrt(np.maximum(1.0, np.minimum(sizes.max(axis=0), sizes.max(axis=1))))
-    return _well_conditioned_step(jacobian, residual, units) if units.max() > 1.0 else None
+    return _well_conditioned_step(jacobian, residual, units, singular) if units.max() > 1.0 else None
 
 
-def _well_conditioned_step(jacobian: FloatArray, residual: FloatArray, units: FloatArray) -> FloatArray | None:
+def _well_conditioned_step(
+    jacobian: FloatArray, residual: FloatArray, units: FloatArray, singular: float
+) -> FloatArray | None:
     """Solve with a Jacobian; None if the Jacobian over the units of its rows and of its columns is singular.
 
     The factors also solve for a probe with components in all directions: small singular values lengthen its solution.
@@ -195,7 +195,7 @@ def _well_conditioned_step(jacobian: FloatArray, residual: FloatArray, units: Fl
         size = (np.abs(jacobian) / np.outer(units, units)).max()
         condition = float(inverse_size * size)
     # Not "condition > bound": a condition that is not a number must count as singular too.
-    if not condition <= 1.0 / SINGULAR:
+    if not condition <= 1.0 / singular:
         return None
     return np.asarray(solutions[:, 0], dtype=np.float64)
 

@@ -185,15 +185,19 @@ def _end(arc: Arc) -> ArcPoint:
     """Find the end of a step, or the point within it at which the load factor reaches 1."""
     if arc.end.load_factor < 1.0:
         return arc.end
-    near = arc.zero(lambda point: point.load_factor - 1.0)
+    share = (1.0 - arc.start.load_factor) / (arc.end.load_factor - arc.start.load_factor)
+    grows = min(arc.start.load_factor_rate, arc.end.load_factor_rate) > 0.0
+    # Next to a limit point the load factor may pass 1 twice.
+    near = arc.at(share * arc.step) if grows else arc.zero(lambda point: point.load_factor - 1.0)
     if near is None:
         return arc.end
     # At the load factor 1 to the last digit, so that the end is the equilibrium asked for.
     x = arc.curve.at(near.x, 1.0)
     if x is None:
         return near
-    point = arc.curve.point(np.append(x, 1.0), near.tangent, near.length)
-    return point or near
+    y = np.append(x, 1.0)
+    length = near.length + float(near.tangent @ (y - near.y))
+    return arc.curve.point(y, near.tangent, length) or near
 
 
 def _departure(traced: Trace, passed: list[Event], number: int) -> int | None:

@@ -262,10 +262,20 @@ def test_a_correction_that_strays_is_refused() -> None:
 
 
 def test_tangent_is_the_direction_projected_on_the_null_space() -> None:
-    derivative = np.array([[1.0, 0.0, 0.0, 0.0]])
+    # Dependent rows leave a null space of three dimensions.
+    derivative = np.array([[1.0, 0.0, 0.0, 0.0]]) * np.array([[1.0], [2.0], [-1.0]])
     tangent = tangent_along(derivative, np.array([5.0, 3.0, 0.0, 4.0]))
     assert tangent is not None
     assert_allclose(tangent, [0.0, 0.6, 0.0, 0.8], rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_tangent_spans_a_null_space_of_one_dimension(side: float) -> None:
+    derivative = np.array([[1.0, 0.0, -2.0], [0.0, 1.0, 3.0]])
+    null_vector = np.array([2.0, -3.0, 1.0]) / np.sqrt(14.0)
+    tangent = tangent_along(derivative, side * np.array([0.1, 0.0, 1.0]))
+    assert tangent is not None
+    assert_allclose(tangent, side * null_vector, rtol=0, atol=1e-15)
 
 
 def test_crossing_direction_is_across_the_tangent() -> None:
