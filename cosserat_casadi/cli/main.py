@@ -123,6 +123,8 @@ def _general(
 
 def main() -> None:
     """Entry point: errors become sentences and exit codes."""
+    # For matrices of rods further threads of BLAS mostly wait, and take the cores of other processes.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     prepare_streams()
     try:
         install_handlers()
@@ -166,9 +168,7 @@ def run(command: Callable[..., object]) -> int:
     # Typer's exit code for an interrupt that a command does not catch.
     if exit_code == INTERRUPTED:
         return _stopped()
-    if isinstance(exit_code, int):
-        return exit_code
-    return 0
+    return exit_code if isinstance(exit_code, int) else 0
 
 
 def _failed(console: Console, error: Exception) -> int:
