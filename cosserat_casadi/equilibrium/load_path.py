@@ -25,7 +25,7 @@ FIRST_STEP = 0.25
 """Longest first step of an assembly with floating frames: the compliance falls to (3/4)³ in it."""
 
 NEARLY_LOADED = 0.99
-"""Load factor beyond which a stalled path may be one that pulls a rod taut."""
+"""Load factor beyond which a stalled path may be one that pulls a rod taut; see nearly_loaded for assemblies."""
 
 PACE = 3
 """Power p of t = 1 − (1 − s)^p on a path whose steps the shape alone bounds."""
@@ -186,9 +186,19 @@ def between(before: FloatArray, after: FloatArray, t: float) -> FloatArray:
 
 def first_step(model: Model) -> float:
     """Longest first step of the load path: the compliance (1 − t)³ of assemblies is far from linear."""
-    if model.discrete.frames and not model.discrete.closed_unloaded:
-        return FIRST_STEP
-    return 1.0
+    return FIRST_STEP if _frames_yield(model) else 1.0
+
+
+def nearly_loaded(model: Model) -> float:
+    """Load factor beyond which a stalled path is followed again, paced: the compliance is small there.
+
+    It falls as 1 − t where supports yield, and as (1 − t)³ in assemblies, which stall at smaller load factors.
+    """
+    return 1.0 - (1.0 - NEARLY_LOADED) ** (1.0 / 3.0) if _frames_yield(model) else NEARLY_LOADED
+
+
+def _frames_yield(model: Model) -> bool:
+    return bool(model.discrete.frames) and not model.discrete.closed_unloaded
 
 
 def column(vector: ca.DM) -> FloatArray:

@@ -20,13 +20,13 @@ from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.judge import correct, judge
 from cosserat_casadi.equilibrium.load_path import (
-    NEARLY_LOADED,
     backwards,
     column,
     continuation_limits,
     input_path,
     load_path,
     may_stretch,
+    nearly_loaded,
     paced_by_shape,
 )
 from cosserat_casadi.equilibrium.locking import with_locking_note
@@ -381,7 +381,7 @@ def _continuation(task: _Task) -> _End:
     result = follow(path, task.limits, task.progress)
     stalled = result.outcome is Outcome.LOAD_STALLED
     paced = None
-    nearly = stalled and not isinstance(task.start, Solution) and result.reached > NEARLY_LOADED
+    nearly = stalled and not isinstance(task.start, Solution) and result.reached > nearly_loaded(task.model)
     if nearly and may_stretch(task.model):
         paced = _paced(task, path)
     if paced is not None:
