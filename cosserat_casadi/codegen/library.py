@@ -34,14 +34,7 @@ from cosserat_casadi.codegen.turn_budget import ALWAYS, SETTLING_ITERATIONS, Tur
 from cosserat_casadi.compiling.c_tables import numbers
 from cosserat_casadi.compiling.texts import render, resource
 from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
-from cosserat_casadi.equilibrium.load_path import (
-    NEARLY_LOADED,
-    PACE,
-    continuation_limits,
-    first_step,
-    may_stretch,
-    nearly_loaded,
-)
+from cosserat_casadi.equilibrium.load_path import PACE, continuation_limits, first_step, may_stretch, nearly_loaded
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.input_bounds import ranges_of_inputs
@@ -349,7 +342,8 @@ def _words(model: Model, names: Names, contents: FolderContents) -> dict[str, An
         **sizes,
         **dict.fromkeys(("of_rods", "on_cores", "with_axes"), True),
         "family": "solver_",
-        **solver_constants(continuation_limits(model), near=MAX_DISTANCE, nearly=nearly_loaded(model)),
+        **solver_constants(continuation_limits(model), near=MAX_DISTANCE),
+        "nearly_loaded": nearly_loaded(model),
         "step_weights": numbers(weights.tolist()),
         "is_shape": numbers(model.discrete.unknowns.differential.astype(int).tolist()),
         "paces": int(may_stretch(model)),
@@ -392,20 +386,18 @@ def _sizes(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str
     }
 
 
-def solver_constants(limits: ContinuationSettings, near: float, nearly: float = NEARLY_LOADED) -> dict[str, Any]:
+def solver_constants(limits: ContinuationSettings, near: float) -> dict[str, Any]:
     """Words of the templates for the limits of the solver.
 
     Args:
         limits: limits of a continuation.
         near: largest distance of two solutions on one branch.
-        nearly: load factor beyond which a stalled path is followed again, paced.
     """
     return {
         "tolerance": limits.newton.tolerance,
         "iterations": limits.newton.iterations,
         "shortest": limits.shortest,
         "pace": PACE,
-        "nearly_loaded": nearly,
         "longest": limits.longest,
         "inexact": limits.inexact,
         "most_bent": MOST_BENT,

@@ -186,19 +186,12 @@ def between(before: FloatArray, after: FloatArray, t: float) -> FloatArray:
 
 def first_step(model: Model) -> float:
     """Longest first step of the load path: the compliance (1 − t)³ of assemblies is far from linear."""
-    return FIRST_STEP if _frames_yield(model) else 1.0
+    return FIRST_STEP if model.discrete.frames and not model.discrete.closed_unloaded else 1.0
 
 
 def nearly_loaded(model: Model) -> float:
-    """Load factor beyond which a stalled path is followed again, paced: the compliance is small there.
-
-    It falls as 1 − t where supports yield, and as (1 − t)³ in assemblies, which stall at smaller load factors.
-    """
-    return 1.0 - (1.0 - NEARLY_LOADED) ** (1.0 / 3.0) if _frames_yield(model) else NEARLY_LOADED
-
-
-def _frames_yield(model: Model) -> bool:
-    return bool(model.discrete.frames) and not model.discrete.closed_unloaded
+    """Load factor beyond which a stalled path is paced: the compliance is as small in assemblies, as (1 − t)³."""
+    return NEARLY_LOADED if first_step(model) == 1.0 else 1.0 - (1.0 - NEARLY_LOADED) ** (1.0 / 3.0)
 
 
 def column(vector: ca.DM) -> FloatArray:

@@ -141,9 +141,7 @@ class _Task:
         """Unknowns at the start, shape (n,)."""
         if self.start is None:
             return self.model.unloaded()
-        if isinstance(self.start, Solution):
-            return self.start.x
-        return self.start
+        return self.start.x if isinstance(self.start, Solution) else self.start
 
 
 @dataclass(frozen=True)
@@ -380,10 +378,8 @@ def _continuation(task: _Task) -> _End:
     path = past_no_obstacle(path, task.model, inputs, before_it=task.places_of_start)
     result = follow(path, task.limits, task.progress)
     stalled = result.outcome is Outcome.LOAD_STALLED
-    paced = None
     nearly = stalled and not isinstance(task.start, Solution) and result.reached > nearly_loaded(task.model)
-    if nearly and may_stretch(task.model):
-        paced = _paced(task, path)
+    paced = _paced(task, path) if nearly and may_stretch(task.model) else None
     if paced is not None:
         ended = paced if paced.outcome is Outcome.CONVERGED else result
         result = replace(ended, iterations=result.iterations + paced.iterations)
