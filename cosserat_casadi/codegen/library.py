@@ -34,7 +34,7 @@ from cosserat_casadi.codegen.turn_budget import ALWAYS, SETTLING_ITERATIONS, Tur
 from cosserat_casadi.compiling.c_tables import numbers
 from cosserat_casadi.compiling.texts import render, resource
 from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
-from cosserat_casadi.equilibrium.load_path import NEARLY_LOADED, PACE, continuation_limits, first_step, may_stretch
+from cosserat_casadi.equilibrium.load_path import PACE, continuation_limits, first_step, may_stretch, nearly_loaded
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.input_bounds import ranges_of_inputs
@@ -343,6 +343,7 @@ def _words(model: Model, names: Names, contents: FolderContents) -> dict[str, An
         **dict.fromkeys(("of_rods", "on_cores", "with_axes"), True),
         "family": "solver_",
         **solver_constants(continuation_limits(model), near=MAX_DISTANCE),
+        "nearly_loaded": nearly_loaded(model),
         "step_weights": numbers(weights.tolist()),
         "is_shape": numbers(model.discrete.unknowns.differential.astype(int).tolist()),
         "paces": int(may_stretch(model)),
@@ -397,7 +398,6 @@ def solver_constants(limits: ContinuationSettings, near: float) -> dict[str, Any
         "iterations": limits.newton.iterations,
         "shortest": limits.shortest,
         "pace": PACE,
-        "nearly_loaded": NEARLY_LOADED,
         "longest": limits.longest,
         "inexact": limits.inexact,
         "most_bent": MOST_BENT,

@@ -25,7 +25,7 @@ FIRST_STEP = 0.25
 """Longest first step of an assembly with floating frames: the compliance falls to (3/4)³ in it."""
 
 NEARLY_LOADED = 0.99
-"""Load factor beyond which a stalled path may be one that pulls a rod taut."""
+"""Load factor beyond which a stalled path may be one that pulls a rod taut; see nearly_loaded for assemblies."""
 
 PACE = 3
 """Power p of t = 1 − (1 − s)^p on a path whose steps the shape alone bounds."""
@@ -186,9 +186,12 @@ def between(before: FloatArray, after: FloatArray, t: float) -> FloatArray:
 
 def first_step(model: Model) -> float:
     """Longest first step of the load path: the compliance (1 − t)³ of assemblies is far from linear."""
-    if model.discrete.frames and not model.discrete.closed_unloaded:
-        return FIRST_STEP
-    return 1.0
+    return FIRST_STEP if model.discrete.frames and not model.discrete.closed_unloaded else 1.0
+
+
+def nearly_loaded(model: Model) -> float:
+    """Load factor beyond which a stalled path is paced: the compliance is as small in assemblies, as (1 − t)³."""
+    return NEARLY_LOADED if first_step(model) == 1.0 else 1.0 - (1.0 - NEARLY_LOADED) ** (1.0 / 3.0)
 
 
 def column(vector: ca.DM) -> FloatArray:

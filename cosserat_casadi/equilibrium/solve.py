@@ -20,13 +20,13 @@ from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.judge import correct, judge
 from cosserat_casadi.equilibrium.load_path import (
-    NEARLY_LOADED,
     backwards,
     column,
     continuation_limits,
     input_path,
     load_path,
     may_stretch,
+    nearly_loaded,
     paced_by_shape,
 )
 from cosserat_casadi.equilibrium.locking import with_locking_note
@@ -141,9 +141,7 @@ class _Task:
         """Unknowns at the start, shape (n,)."""
         if self.start is None:
             return self.model.unloaded()
-        if isinstance(self.start, Solution):
-            return self.start.x
-        return self.start
+        return self.start.x if isinstance(self.start, Solution) else self.start
 
 
 @dataclass(frozen=True)
@@ -380,10 +378,8 @@ def _continuation(task: _Task) -> _End:
     path = past_no_obstacle(path, task.model, inputs, before_it=task.places_of_start)
     result = follow(path, task.limits, task.progress)
     stalled = result.outcome is Outcome.LOAD_STALLED
-    paced = None
-    nearly = stalled and not isinstance(task.start, Solution) and result.reached > NEARLY_LOADED
-    if nearly and may_stretch(task.model):
-        paced = _paced(task, path)
+    nearly = stalled and not isinstance(task.start, Solution) and result.reached > nearly_loaded(task.model)
+    paced = _paced(task, path) if nearly and may_stretch(task.model) else None
     if paced is not None:
         ended = paced if paced.outcome is Outcome.CONVERGED else result
         result = replace(ended, iterations=result.iterations + paced.iterations)
