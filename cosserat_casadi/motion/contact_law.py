@@ -285,9 +285,7 @@ def program_record(function: ca.Function) -> Held:
 
 def called_in_c(function: ca.Function, library: str | None) -> Held:
     """Make the record with which C calls a function: from a shared object, or without one as a program."""
-    if library is not None:
-        return function_record(repeated(function, library))
-    return program_record(function)
+    return function_record(repeated(function, library)) if library is not None else program_record(function)
 
 
 def give_memory(held: Held, arguments: Sequence[FloatArray], result: FloatArray) -> None:

@@ -94,9 +94,7 @@ def eigenpairs(stiffness: FloatArray, damping: FloatArray, mass: FloatArray, *, 
     Raises:
         ValueError: M is zero.
     """
-    if np.any(damping):
-        return _damped(stiffness, damping, mass)
-    return _undamped(stiffness, mass, conservative)
+    return _damped(stiffness, damping, mass) if np.any(damping) else _undamped(stiffness, mass, conservative)
 
 
 def undamped_modes(stiffness: FloatArray, mass: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -41,6 +41,7 @@ from cosserat_casadi.motion.step_kernels import (
     MATRICES,
     StepKernels,
     dense_jacobians,
+    fastest_derivatives,
     interpreted_jacobians,
     interpreted_residual,
 )
@@ -75,7 +76,7 @@ INSTRUCTION = 7e-9
 """Time of an instruction of inverse dynamics in CasADi's virtual machine, s: from 5e-9 for few to 11e-9 for many."""
 
 AS_MANY_RESIDUALS = 10.0
-"""Time of the derivatives of inverse dynamics there, over inverse dynamics: 6 to 15 for robots of one to six rods."""
+"""Time of its derivatives there over its own, before they are timed: 6 to 15 for rods of one element, 80 for nine."""
 
 SAVED = {PROGRAM: 0.9, RESIDUAL: 0.2, JACOBIANS: 0.9}
 """Share of the virtual machine's time saved by a program, by machine code beyond a program, and by machine code."""
@@ -275,8 +276,10 @@ def _spent(model: Model) -> dict[str, float]:
 
 def _interpreted_time(model: Model, name: str, work: StepStatistics) -> float:
     """Processor time of the virtual machine for a function in a motion, s."""
-    calls = AS_MANY_RESIDUALS * work.jacobians if name == JACOBIANS else STAGES * work.iterations
-    return calls * _instructions(model) * INSTRUCTION
+    residual = _instructions(model) * INSTRUCTION
+    if name != JACOBIANS:
+        return STAGES * work.iterations * residual
+    return work.jacobians * next(iter(fastest_derivatives(model)), AS_MANY_RESIDUALS * residual)
 
 
 def _instructions(model: Model) -> int:

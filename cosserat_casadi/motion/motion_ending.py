@@ -43,9 +43,7 @@ def outcome_of(history: History) -> MotionOutcome:
         return outcome
     if snapping(history):
         return MotionOutcome.SNAPPED
-    if independence(history) < DEPENDENT:
-        return MotionOutcome.SINGULAR_CONSTRAINT
-    return outcome
+    return MotionOutcome.SINGULAR_CONSTRAINT if independence(history) < DEPENDENT else outcome
 
 
 def independence(history: History) -> float:

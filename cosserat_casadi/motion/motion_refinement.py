@@ -459,9 +459,7 @@ def _simulated(
     tolerance = tolerance_of(scene, simulation)
     search = _Search(moving_scene, simulation, start, progress, source, events, tolerance, ladder)
     try:
-        if scene.accuracy.fixed:
-            return _with_fixed(search, first)
-        return _with_tolerance(search, first)
+        return _with_fixed(search, first) if scene.accuracy.fixed else _with_tolerance(search, first)
     except KeyboardInterrupt:
         # A motion that was computed to its end, if less exactly than asked, is what whoever stopped it wants to see.
         if not search.levels:

@@ -59,9 +59,7 @@ class MovingPoints:
 
     def in_balances(self, by_unknowns: FloatArray) -> FloatArray:
         """Scale generalised forces on the points, or their derivatives, to the units of balances, (n,) or (n, n)."""
-        if self.shares is None:
-            return by_unknowns
-        return (by_unknowns.T * self.shares).T
+        return by_unknowns if self.shares is None else (by_unknowns.T * self.shares).T
 
     @property
     def in_iterations(self) -> list[ca.Function]:

@@ -179,9 +179,7 @@ class OneSided:
 
     def first_phases(self, x: FloatArray, inputs: FloatArray) -> Closed:
         """Determine which pairs are closed at a state."""
-        if not self.pairs:
-            return ()
-        return tuple(bool(gap <= TOUCHING) for gap in self.gaps(x, inputs))
+        return tuple(bool(gap <= TOUCHING) for gap in self.gaps(x, inputs)) if self.pairs else ()
 
     def settled(
         self,

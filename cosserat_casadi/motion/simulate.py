@@ -611,9 +611,7 @@ def asked_of(scene: Scene, simulation: Simulation) -> float | None:
 
 def tolerance_of(scene: Scene, simulation: Simulation) -> float:
     """Wanted error of the paths over the length."""
-    if simulation.tolerance is not None:
-        return simulation.tolerance
-    return scene.motion_tolerance
+    return simulation.tolerance if simulation.tolerance is not None else scene.motion_tolerance
 
 
 def moving_inputs(model: Model) -> MovingInputs:

@@ -202,9 +202,7 @@ class Curve:
         """Find the unknowns at a load factor near a start, both of shape (n,); None if no steps converge."""
         across_loads = np.append(np.zeros_like(start), 1.0)
         corrected = self.correct(np.append(start, load_factor), across_loads)
-        if corrected is None:
-            return None
-        return corrected[0][:-1]
+        return None if corrected is None else corrected[0][:-1]
 
     def bounded(self, current: ArcPoint, step: float) -> float:
         """Limit a step to the largest one that the settings allow at a point."""

@@ -70,9 +70,7 @@ class Path:
 
     def length(self, change: FloatArray) -> float:
         """Weighted 2-norm of a change of x, shape (n,)."""
-        if self.step_weights is None:
-            return length_of(change)
-        return length_of(self.step_weights * change)
+        return length_of(change) if self.step_weights is None else length_of(self.step_weights * change)
 
     def admitted(self, before: PathPoint, after: PathPoint) -> bool:
         """Whether a step, or a correction at one t, may lead from one point to another."""

@@ -145,9 +145,7 @@ def signed_singular_value(_y: FloatArray, _jacobian: FloatArray, bordered: Float
     """Smallest singular value of the bordered matrix with the sign of its determinant, shape (1,)."""
     smallest = np.linalg.norm(bordered, -2)
     determinant_sign = float(np.linalg.slogdet(bordered)[0])
-    if determinant_sign >= 0.0:
-        return np.array([smallest])
-    return np.array([-smallest])
+    return np.array([smallest]) if determinant_sign >= 0.0 else np.array([-smallest])
 
 
 DETERMINANT = Monitor(signed_singular_value, feels_limits=False)

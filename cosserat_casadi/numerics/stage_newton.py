@@ -138,9 +138,7 @@ def _outcome(length: float, longest: float, contraction: float, allowed: float) 
         return None
     expected = max(contraction, LEAST_CONTRACTION)
     left = length * expected / (1.0 - expected)
-    if left <= allowed:
-        return StageOutcome.CONVERGED
-    return None
+    return StageOutcome.CONVERGED if left <= allowed else None
 
 
 @dataclass
