@@ -76,7 +76,7 @@ INSTRUCTION = 7e-9
 """Time of an instruction of inverse dynamics in CasADi's virtual machine, s: from 5e-9 for few to 11e-9 for many."""
 
 AS_MANY_RESIDUALS = 10.0
-"""Time of its derivatives there over its own, before they are timed: 6 to 15 for rods of one element, 80 for nine."""
+"""Time of its derivatives there over that of inverse dynamics, before they are timed: 6 to 15 for one element a rod."""
 
 SAVED = {PROGRAM: 0.9, RESIDUAL: 0.2, JACOBIANS: 0.9}
 """Share of the virtual machine's time saved by a program, by machine code beyond a program, and by machine code."""
