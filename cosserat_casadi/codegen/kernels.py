@@ -158,9 +158,7 @@ def _written(model: Model, entry: FunctionInC, most_in_columns: int) -> ca.Funct
         return with_dense_results(entry.function, entry.kernel)
     if entry.spec.name == "path_jacobian":
         columned = by_columns(on_path(model), entry.function, entry.kernel, most_in_columns)
-        if columned is not None:
-            return columned
-        return kernel(model, entry.function, entry.kernel)
+        return columned if columned is not None else kernel(model, entry.function, entry.kernel)
     longest = STRAIGHT if entry.spec.name in SELDOM else STRAIGHT_BESIDE_INTERVALS
     straight = None if _literal(model) else scalar(entry.function, entry.kernel, longest)
     # More statements than STRAIGHT are worth it only where calls of intervals are made four at a time.

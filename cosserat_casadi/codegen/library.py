@@ -342,8 +342,7 @@ def _words(model: Model, names: Names, contents: FolderContents) -> dict[str, An
         **sizes,
         **dict.fromkeys(("of_rods", "on_cores", "with_axes"), True),
         "family": "solver_",
-        **solver_constants(continuation_limits(model), near=MAX_DISTANCE),
-        "nearly_loaded": nearly_loaded(model),
+        **solver_constants(continuation_limits(model), MAX_DISTANCE, nearly_loaded(model)),
         "step_weights": numbers(weights.tolist()),
         "is_shape": numbers(model.discrete.unknowns.differential.astype(int).tolist()),
         "paces": int(may_stretch(model)),
@@ -386,18 +385,20 @@ def _sizes(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str
     }
 
 
-def solver_constants(limits: ContinuationSettings, near: float) -> dict[str, Any]:
+def solver_constants(limits: ContinuationSettings, near: float, paced_beyond: float) -> dict[str, Any]:
     """Words of the templates for the limits of the solver.
 
     Args:
         limits: limits of a continuation.
         near: largest distance of two solutions on one branch.
+        paced_beyond: load factor beyond which a stalled path is paced.
     """
     return {
         "tolerance": limits.newton.tolerance,
         "iterations": limits.newton.iterations,
         "shortest": limits.shortest,
         "pace": PACE,
+        "nearly_loaded": paced_beyond,
         "longest": limits.longest,
         "inexact": limits.inexact,
         "most_bent": MOST_BENT,

@@ -36,6 +36,7 @@ from cosserat_casadi.codegen.parameters import given_size, parameter_rate, with_
 from cosserat_casadi.codegen.status import TUBE_OUTCOMES, status_words
 from cosserat_casadi.codegen.turn_budget import ALWAYS
 from cosserat_casadi.compiling.c_tables import numbers
+from cosserat_casadi.equilibrium.load_path import NEARLY_LOADED
 from cosserat_casadi.errors import ExportError, Problem, refuse
 from cosserat_casadi.maths.calls import with_dense_results
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product
@@ -131,7 +132,7 @@ def _words(
     return {
         **basics,
         **dense_words(basics),
-        **solver_constants(LIMITS, near=NEAR),
+        **solver_constants(LIMITS, NEAR, NEARLY_LOADED),
         **status_words(names, TUBE_OUTCOMES),
         **input_words(model, names, RANGES),
         **title_words(names, robot.scene, generated),
